@@ -105,7 +105,7 @@ const PLOTLY = "plotly.js-basic-dist-min/plotly-basic.min.js";
 const COMPILED_AT_ONCE = "//# allFunctionsCalledOnLoad\n";
 await put("plotly.min.js", COMPILED_AT_ONCE + (await readFile(join(ROOT, "node_modules", PLOTLY), "utf8")));
 await mkdir(join(DIST, "viser"), { recursive: true });
-for (const name of ["notices", "aside", "frame", "yarn"]) {
+for (const name of ["notices", "yarn", "smaller", "aside", "frame"]) {
   const source = await readFile(join(ROOT, "viser", `${name}.js`), "utf8");
   await put(`viser/${name}.js`, (await transform(source, { minify: true, target: "es2022" })).code);
 }

@@ -90,19 +90,23 @@ class Ground:
         return rows, columns
 
     @cached_property
-    def middle_mm(self) -> Array:
-        """Centre of the fabric, with what it rests on; the scene's origin."""
+    def _ends_mm(self) -> Array:
+        """Lowest and highest place, (2, 2), of the fabric and of what it rests on."""
         if self.box_mm is not None:
-            return np.asarray(self.box_mm.mean(axis=0))
-        middle: Array = self.centres_mm.reshape(-1, 2).mean(axis=0, dtype=np.float64)
-        return middle
+            return np.asarray(self.box_mm + 0.5 * np.array([[-1], [1]]) * self.sizes_mm[0, 0])
+        places, half = (v.reshape(-1, 2).astype(float) for v in (self.centres_mm, self.sizes_mm))
+        half /= 2
+        return np.array([(places - half).min(axis=0), (places + half).max(axis=0)])
 
-    @cached_property
+    @property
+    def middle_mm(self) -> Array:
+        """Half way between the ends of the fabric, with what it rests on; the scene's origin."""
+        return np.asarray(self._ends_mm.mean(axis=0))
+
+    @property
     def extent_mm(self) -> Array:
         """Width and height, with what the fabric rests on."""
-        box = self.centres_mm.reshape(-1, 2) if self.box_mm is None else self.box_mm
-        extent: Array = np.ptp(box, axis=0).astype(float) + self.sizes_mm[0, 0]
-        return extent
+        return np.asarray(np.ptp(self._ends_mm, axis=0))
 
     @property
     def framed_mm(self) -> Array:

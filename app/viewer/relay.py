@@ -29,7 +29,7 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(str(distribution("viser").locate_file("viser/client/build/index.html")))
-SCRIPTS = ("viser/notices.js", "viser/yarn.js", "viser/aside.js", "viser/frame.js")
+SCRIPTS = tuple(f"viser/{name}.js" for name in ("notices", "yarn", "smaller", "aside", "frame"))
 STYLE = """<style>
   /* viser's notes are about the computer, not about the fabric. */
   .mantine-Notifications-root { display: none !important; }

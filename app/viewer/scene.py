@@ -73,7 +73,7 @@ class SceneWriter:
         face : picture of a cloth of many stitches, for the eye that is far away; a PNG.
         """
         part, ground = drawing.part, drawing.ground
-        with self._lock:
+        with self._lock, self._server.atomic():  # no scale, nor frame, of the cloth before
             self._drawing = drawing
             stitches = self._lay(exact=not self._server.get_clients())
             self._draw_rectangles(part, ground.middle_mm)
@@ -268,8 +268,10 @@ def round_length_mm(width_mm: float) -> float:
 
 
 def _scale_below_mm(ground: Ground) -> float:
-    """How far the scale lies below a fabric; its lowest loops reach below its own edge."""
-    stitch = float(ground.sizes_mm[..., 1].mean())
+    """How far the scale lies below a fabric; its lowest loops reach below its own edge, the farther
+    the more they are stretched.
+    """
+    stitch = float(ground.sizes_mm[..., 1].max())
     return max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * float(ground.extent_mm[1]))
 
 

@@ -9,11 +9,14 @@ export function figure(value, digits = 3) {
   return value.toFixed(decimals).replace("-", "−");
 }
 
+/** Between the ends of an interval: a dash beside a minus would be a second one. @param {readonly (number | undefined)[]} ends */
+const upTo = (ends) => (ends.some((end) => end !== undefined && end < 0) ? " to " : " – ");
+
 /** Both ends with as many decimals as the larger one needs. @param {readonly number[] | null | undefined} interval */
 export function range(interval) {
   if (!interval || !interval.every(Number.isFinite)) return "";
   const [low, high] = interval;
-  return `${figure(low, 2)} – ${figure(high, 2)}`;
+  return `${figure(low, 2)}${upTo(interval)}${figure(high, 2)}`;
 }
 
 /** An interval of which one end is more than this times the other says no more than that it is wide. */
@@ -39,7 +42,7 @@ export function spread([low, high]) {
  * @param {number} [decimals]
  */
 export function percentRange(ends, decimals = 0) {
-  return ends.map((end) => (end === undefined ? "" : percent(end, decimals).slice(0, -2))).join(" – ");
+  return ends.map((end) => (end === undefined ? "" : percent(end, decimals).slice(0, -2))).join(upTo(ends));
 }
 
 /** @param {number} share @param {number} [decimals] */

@@ -50,6 +50,7 @@ export class Stretcher {
       stretch.value = { ...stretch.value, stale };
       pullSoon();
     });
+    stretch.listen(({ value }) => value || this.belonging.clear());
     const outdate = () => {
       this.cancel();
       pullSoon();

@@ -68,6 +68,8 @@
   ];
   /** Nodes of stitches, by name. @type {Map<string, Stitches>} */
   const cloth = new Map();
+  /** Names of pictures of the cloth, which viser draws white until they are decoded. @type {Set<string>} */
+  const pictures = new Set();
   /** Updates of a shape that do not yet agree on the number of its stitches. @type {Map<string, Stitches>} */
   const early = new Map();
   /** What waits for new ones to be built. @type {Message[]} */
@@ -84,6 +86,13 @@
     let stitches = 0;
     viser()?.nodeRefFromName[name]?.traverse((/** @type {any} */ part) => (stitches += part.instancesCount ?? 0));
     return stitches > 0;
+  }
+
+  /** Whether a picture of the cloth can be drawn. @param {string} name */
+  function decoded(name) {
+    let there = false;
+    viser()?.nodeRefFromName[name]?.traverse((/** @type {any} */ part) => (there ||= Boolean(part.material?.map)));
+    return there;
   }
 
   /** Whether a picture is requested. @param {Message} message */
@@ -129,17 +138,25 @@
     const held = wait ? messages.filter(changes) : [];
     const rest = wait ? messages.filter((message) => !changes(message)) : [...later.splice(0), ...messages];
     later.push(...held);
-    for (const { type, name = "" } of messages) if (type === "RemoveSceneNodeMessage") cloth.delete(name);
+    for (const { type, name = "" } of messages) {
+      if (type === "ImageMessage") pictures.add(name);
+      if (type !== "RemoveSceneNodeMessage") continue;
+      cloth.delete(name);
+      pictures.delete(name);
+    }
     return rest;
   }
 
-  /** Whether all shapes are built. */
-  const complete = () => [...cloth.keys()].every(built);
+  /** Whether all shapes are built, and their pictures decoded. */
+  const complete = () => [...cloth.keys()].every(built) && [...pictures].every(decoded);
 
   /** After each frame. */
   function catchUp() {
     if (!complete() && ++waited < PATIENCE) return;
-    if (waited === PATIENCE) for (const name of cloth.keys()) if (!built(name)) cloth.delete(name);
+    if (waited === PATIENCE) {
+      for (const name of cloth.keys()) if (!built(name)) cloth.delete(name);
+      for (const name of pictures) if (!decoded(name)) pictures.delete(name);
+    }
     waited = 0;
     if (!later.length) return;
     mixed = !later.some(isPicture);
@@ -167,6 +184,7 @@
         if (data.type === "connected" || data.type === "closed") this.#connecting = false;
         if (data.type === "connected") {
           cloth.clear();
+          pictures.clear();
           early.clear();
           later = [];
         }

@@ -37,13 +37,14 @@ export class Run {
   }
 
   /**
+   * Say that something is under way, until it is done or given up.
+   *
    * @template T
-   * @param {string} kind
-   * @param {unknown} request
    * @param {string} doing in words
-   * @returns {Promise<T | null>} null if it was given up or failed, which is then on show
+   * @param {(signal: AbortSignal) => Promise<T>} work
+   * @returns {Promise<T | null>} null if it was given up
    */
-  async run(kind, request, doing) {
+  async during(doing, work) {
     this.cancel();
     const controller = new AbortController();
     this.#running = controller;
@@ -51,29 +52,45 @@ export class Run {
     this.#bar.removeAttribute("value");
     this.#text.textContent = doing;
     try {
-      /** @type {T} */
-      const result = await runJob(kind, request, {
-        signal: controller.signal,
-        onProgress: ({ state, progress }) => {
-          if (state === "waiting") this.#text.textContent = "Waiting for its turn …";
-          else {
-            if (progress > 0) this.#bar.value = progress;
-            this.#text.textContent = progress > 0 ? `${doing} ${Math.round(100 * progress)} %` : doing;
-          }
-        },
-      });
+      const result = await work(controller.signal);
       return controller.signal.aborted ? null : result;
-    } catch (error) {
-      if (isAbort(error) || controller.signal.aborted) return null;
-      if (!(error instanceof ApiError)) throw error;
-      this.say(error.problem);
-      return null;
     } finally {
       if (this.#running === controller) {
         this.#running = null;
         this.#busy.hidden = true;
       }
     }
+  }
+
+  /**
+   * @template T
+   * @param {string} kind
+   * @param {unknown} request
+   * @param {string} doing in words
+   * @returns {Promise<T | null>} null if it was given up or failed, which is then on show
+   */
+  run(kind, request, doing) {
+    /** @param {AbortSignal} signal @returns {Promise<T | null>} */
+    const work = async (signal) => {
+      try {
+        return await runJob(kind, request, {
+          signal,
+          onProgress: ({ state, progress }) => {
+            if (state === "waiting") this.#text.textContent = "Waiting for its turn …";
+            else {
+              if (progress > 0) this.#bar.value = progress;
+              this.#text.textContent = progress > 0 ? `${doing} ${Math.round(100 * progress)} %` : doing;
+            }
+          },
+        });
+      } catch (error) {
+        if (isAbort(error) || signal.aborted) return null;
+        if (!(error instanceof ApiError)) throw error;
+        this.say(error.problem);
+        return null;
+      }
+    };
+    return this.during(doing, work);
   }
 
   /** @param {Pick<Problem, "title" | "detail" | "remedy">} problem */

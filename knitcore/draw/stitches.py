@@ -44,6 +44,8 @@ from knitcore.draw.fabric_loops import (
 )
 from knitcore.draw.lattice import Lattice, flat_lattice, resting_lattice
 from knitcore.materials import Material
+from knitcore.prediction.densities import densities_of
+from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.size import RelaxedSize
 from knitcore.yarn.library.store import StoredStitch, stored_fabric, stored_stitch
 
@@ -139,12 +141,15 @@ def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | Non
 def _of_stored(
     chart: StitchChart, material: Material, stored: StoredStitch, radius_mm: float
 ) -> StitchShapes:
-    """Shapes of a stored repeat, scaled like the fabric that it resembles."""
+    """Shapes of a stored repeat, as deep as in the fabric that it resembles.
+
+    It is as wide and high as predicted: yarn that was relaxed alone folds more than knitted fabric.
+    """
     reference = reference_fabric(stored.chart)
     like, record = stored_fabric(reference, stored.material), material.record(reference)
-    course = stored.cell_course_mm * record.stitch_course_mm / like.cell_course_mm
-    wale = stored.cell_wale_mm * record.stitch_wale_mm / like.cell_wale_mm
-    depth = np.sqrt(course * wale / (stored.cell_course_mm * stored.cell_wale_mm))
+    depth = np.sqrt(np.prod(record.stitch_mm) / (like.cell_course_mm * like.cell_wale_mm))
+    repeat = densities_of(chart.repeat_cut().purl[None])
+    course, wale = packaged_model().relaxed_mm(repeat, material)[0]
     rows, columns = np.indices((chart.rows, chart.columns))
     index = rows % stored.chart.rows * stored.chart.columns + columns % stored.chart.columns
     centres = np.stack([(columns + 0.5) * course, (rows + 0.5) * wale], axis=-1)

@@ -199,3 +199,19 @@ def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:
         "() => [window.names['this chart'], window.names['1×1 rib']]"
     )
     assert abs(y - y1) > 13 or abs(x - x1) > (wide + wide1) / 2
+
+
+def test_how_far_a_fill_is_stays_in_sight_below_many_parts(flat_studio: Page) -> None:
+    for slow in ("predict", "jobs/*/events"):
+        flat_studio.route(f"**/api/v1/{slow}", lambda route: None)  # its end is never heard
+    flat_studio.keyboard.press("Shift+W")
+    for _ in range(6):
+        flat_studio.click("#part-add")
+    flat_studio.select_option("#part-0-like", "much softer")
+    flat_studio.click("#fill-run")
+    expect(flat_studio.locator(".filling .inverse-run:visible")).to_be_in_viewport()
+    flat_studio.fill("#part-0-course", "0.2")
+    flat_studio.click("#fill-run")
+    expect(flat_studio.locator(".filling .inverse-run:visible")).to_be_in_viewport()
+    flat_studio.locator(".filling").get_by_role("button", name="Cancel").click()
+    expect(flat_studio.locator(".filling .inverse-run:visible")).to_have_count(0)

@@ -226,6 +226,21 @@ def test_what_comes_late_does_not_touch_another_design(
 
 
 @pytest.mark.slow
+def test_another_design_begins_without_what_the_one_before_left(flat_studio: Page) -> None:
+    stretched(flat_studio)
+    caption = flat_studio.locator(".fabric-caption")
+    expect(caption).to_contain_text("Stretched")
+    flat_studio.focus("#chart")
+    flat_studio.keyboard.press("Shift+N")
+    flat_studio.click("#gallery-seed")
+    expect(caption).to_have_text("Relaxed, pinned flat")
+    assert not flat_studio.locator("#fabric-legend").count()
+    expect(flat_studio.locator("[data-result=stretch]")).not_to_have_attribute(
+        "data-stale", re.compile(".")
+    )
+
+
+@pytest.mark.slow
 def test_a_garment_that_cannot_be_planned_leaves_no_plan(flat_studio: Page) -> None:
     page = flat_studio
     page.keyboard.press("Control+Shift+G")

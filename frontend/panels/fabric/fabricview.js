@@ -168,6 +168,8 @@ export function fabricview(host, studio, view) {
     shown = url;
     pass = "";
     sent = "";
+    [confirmed, confirmedColours] = ["", null]; // of another design
+    describe();
     setLive(false);
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     still.clear();

@@ -296,7 +296,7 @@ export function inspector(host, studio) {
 /** How a stretch compares with those of the yarn's own fabrics. @param {PredictResult["hand"][number]["course"]} stretch */
 function amongFabrics({ more_than: more, less_than: less }) {
   const parts = [more.length && `more than ${inWords(more)}`, less.length && `less than ${inWords(less)}`];
-  return `${parts.filter(Boolean).join(", ") || "like this yarn's other fabrics"}.`;
+  return `stretch ${parts.filter(Boolean).join(", ") || "as this yarn's other fabrics do"}.`;
 }
 
 /** @param {string} word */

@@ -121,7 +121,7 @@ export function fromStiffness(studio) {
   /** @param {Part} part @param {number} at */
   const item = (part, at) => {
     const inputs = AXES.map(({ axis, label }) => {
-      const input = field(`Target modulus along ${label}, N/mm: ${part.name}`, 0, {
+      const input = field(`Target stiffness along ${label}, N/mm: ${part.name}`, 0, {
         min: "0.0001",
         step: "any",
         required: false,
@@ -244,7 +244,10 @@ export function fromStiffness(studio) {
     });
 
   const fill = async () => {
-    if (parts.some(({ wish }) => wish)) await measureAll();
+    if (parts.some(({ wish }) => wish)) {
+      const known = await run.during("Computing the parts as they are …", () => measureAll().then(() => true));
+      if (!known) return;
+    }
     const waiting = parts.find(({ wish }) => wish);
     if (waiting) {
       run.say({
@@ -259,8 +262,8 @@ export function fromStiffness(studio) {
     if (!targeted.length) {
       run.say({
         title: "There is no target",
-        detail: "A part needs a modulus along rows or columns.",
-        remedy: "Add a part, and give it a number.",
+        detail: "A part needs a stiffness along rows or columns.",
+        remedy: "Add a part, and say how it should be, or give it a number.",
       });
       return;
     }
@@ -388,9 +391,8 @@ export function fromStiffness(studio) {
         h("label", { class: "check" }, scattered, "Allow irregular patterns (closer match, harder to knit by hand)"),
         h("label", { class: "check" }, large, "Allow larger patterns (the first time takes up to a minute)"),
       ),
-      fillButton(studio, "fill-run", "fill", "a fill"),
+      fillButton(studio, "fill-run", "fill", "a fill", run),
     ),
-    run.element,
     answer,
   );
   chart.onSettle(measureAll);

@@ -14,14 +14,15 @@ export function form(submit, ...content) {
 }
 
 /**
- * The button that fills the chart, and why it cannot where the chart is too large.
+ * The button that fills the chart, how far that is, and why it cannot where the chart is too large.
  *
  * @param {import("../../state/studio.js").Studio} studio
  * @param {string} id of the button
  * @param {string} operation
  * @param {string} what it is for a knitter
+ * @param {import("../../widgets/jobrun.js").Run} run
  */
-export function fillButton(studio, id, operation, what) {
+export function fillButton(studio, id, operation, what, run) {
   const button = h("button", { class: "button primary", type: "submit", id }, "Fill");
   const note = h("p", { class: "muted small" });
   const show = () => {
@@ -31,7 +32,7 @@ export function fillButton(studio, id, operation, what) {
   };
   studio.document.onChange(({ resized }) => resized && show());
   studio.largest.watch(show);
-  return h("div", { class: "inverse-bar inverse-start" }, button, note);
+  return h("div", { class: "inverse-bar inverse-start" }, button, note, run.element);
 }
 
 /** How near an answer comes. @param {boolean} good @param {string} words */

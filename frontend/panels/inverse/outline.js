@@ -249,9 +249,8 @@ export function fromOutline(studio) {
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands of at least", band, "lines"),
       ),
-      fillButton(studio, "outline-run", "shape", "an outline, for which it is pulled a hundred times"),
+      fillButton(studio, "outline-run", "shape", "an outline, for which it is pulled a hundred times", run),
     ),
-    run.element,
     answer,
   );
   return { element };

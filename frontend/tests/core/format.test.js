@@ -15,10 +15,11 @@ test("three figures, with the zeros that count", () => {
 
 test("intervals and percentages", () => {
   assert.equal(range([0.054, 0.072]), "0.054 – 0.072");
+  assert.equal(range([-0.25, -0.1]), "−0.25 to −0.10");
   assert.equal(range(null), "");
   assert.equal(percent(0.3), "30 %");
   assert.equal(percent(-0.064, 1), "−6.4 %");
-  assert.equal(percentRange([-0.0072, 0.1352], 1), "−0.7 – 13.5");
+  assert.equal(percentRange([-0.0072, 0.1352], 1), "−0.7 to 13.5");
   assert.equal(percentRange([0.28, 0.32]), "28 – 32");
   assert.equal(percentRange([]), "");
 });

@@ -259,6 +259,9 @@ async function withCloth() {
   const built = (/** @type {string} */ name) => {
     nodeRefFromName[name] = { traverse: (look) => look({ instancesCount: 120 }) };
   };
+  const decoded = (/** @type {string} */ name) => {
+    nodeRefFromName[name] = { traverse: (look) => look({ material: { map: {} } }) };
+  };
   const drawn = () => {
     client.invalidate();
     client.frame();
@@ -268,7 +271,7 @@ async function withCloth() {
   thread.answer("message_batch", [{ ...NEW, name: "/fabric/1" }]);
   built("/fabric/1");
   messages.length = 0;
-  return { client, thread, messages, built, drawn };
+  return { client, thread, messages, built, decoded, drawn };
 }
 
 /** Where stitches are. @param {number} stitches */
@@ -355,6 +358,19 @@ test("nothing is drawn while shapes are built, and the whole cloth afterwards", 
   built("/fabric/2");
   for (let frame = 0; frame < 3; frame++) drawn();
   assert.ok(client.drawn > before, "the cloth was never drawn");
+});
+
+test("nothing is drawn while a picture of the cloth is decoded, however long that takes", async () => {
+  const { client, thread, drawn, decoded } = await withCloth();
+  drawn();
+  const before = client.drawn;
+  thread.answer("message_batch", [{ type: "ImageMessage", name: "/back" }]);
+  for (let frame = 0; frame < 3; frame++) drawn();
+  assert.equal(client.drawn, before, "a white board was drawn behind the cloth");
+  decoded("/back");
+  client.frame();
+  client.frame();
+  assert.ok(client.drawn > before, "the picture waited for an idle frame");
 });
 
 test("a canvas that loses its picture while shapes are built is drawn again at once", async () => {

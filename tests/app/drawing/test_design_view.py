@@ -30,6 +30,16 @@ def test_outlines_stay_on_the_fabric() -> None:
     assert len(ground.outline_mm(Box(7, 7, 8, 8))) == 0
 
 
+def test_a_fabric_reaches_as_far_to_each_side_of_its_middle() -> None:
+    """Rows of different height must not put the scale, or a picture, beside the fabric."""
+    chart = "\n".join(["K" * 20] * 20 + ["K" * 20, "P" * 20] * 5)
+    ground = scene_of(SMALL | {"chart": chart}).ground
+    assert np.ptp(ground.sizes_mm[:, 0, 1]) > 0.2
+    ends = ground.outline_mm(Box(0, 0, 30, 20)).reshape(-1, 2)
+    np.testing.assert_allclose(ends.min(axis=0), -ground.extent_mm / 2, rtol=1e-5)
+    np.testing.assert_allclose(ends.max(axis=0), ground.extent_mm / 2, rtol=1e-5)
+
+
 def test_an_outline_follows_the_stitches_of_a_part() -> None:
     ground = scene_of(SMALL).ground
     cross = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]]) > 0

@@ -12,6 +12,7 @@ from knitcore.draw.placing import DEPTH, carried, placed_lines, unstretched
 from knitcore.draw.stitches import StitchShapes, stitch_shapes
 from knitcore.draw.tubes import resampled
 from knitcore.materials import load_library, material
+from knitcore.prediction.predict import predict
 from knitcore.yarn.library.store import stored_stitch
 from tests.knitcore.charts import stitch_charts
 
@@ -79,6 +80,16 @@ def test_a_stored_repeat_is_shown_as_it_relaxed() -> None:
     assert len(shapes.lines) == 16
     bulge = np.ptp(shapes.lines[..., 2])
     assert bulge > 4 * np.ptp(stitch_shapes(StitchChart.parse("K"), ACRYLIC).lines[..., 2])
+
+
+@pytest.mark.parametrize("name", ["acrylic", "cotton"])
+@pytest.mark.parametrize("repeat", ["KKPP", "KKKPPP", "KKKKPPPP", "KP\nKP\nPK\nPK", "K\nK\nP\nP"])
+def test_a_stored_repeat_is_drawn_as_large_as_it_is_predicted(repeat: str, name: str) -> None:
+    chart, yarn = StitchChart.parse(repeat).tile(3, 3), material(name)
+    shapes, predicted = stitch_shapes(chart, yarn), predict(chart, yarn)
+    assert shapes.source.startswith("relaxed cell of this repeat")
+    size = predicted.relaxed_course_mm, predicted.relaxed_wale_mm
+    np.testing.assert_allclose(shapes.lattice.sizes_mm.mean(axis=(0, 1)), size, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["acrylic", "cotton"])
