@@ -1,13 +1,13 @@
 """Stretching a repeat at the yarn level, and fitting a law to it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
-from knitcore.base.errors import KnitcoreError
+from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials.law_uncertainty import (
@@ -18,7 +18,7 @@ from knitcore.materials.law_uncertainty import (
 from knitcore.yarn.library.law_of_stretches import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
 from knitcore.yarn.library.yarns import ChartYarn
 from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
-from knitcore.yarn.study.hysteresis import pull
+from knitcore.yarn.study.hysteresis import Hysteresis, hysteresis, pull
 from knitcore.yarn.study.relax import Branch
 from knitcore.yarn.study.sweep import sweep as swept
 
@@ -40,6 +40,12 @@ FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
 """Largest strain of the two stretches that the law is fitted to; a stress may end them before."""
 _FAR_POINTS = 60
+_HOW = {
+    False: "Pulled once from the state that shaking leaves, as for the law.",
+    True: "Pulled once from the state that shaking leaves, and released until free of force. The "
+    "law is that of pulling.",
+}
+"""Notes on friction, without and with the way back."""
 
 
 class SweepRequest(RubbedRequest):
@@ -49,11 +55,30 @@ class SweepRequest(RubbedRequest):
     direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
     max_strain: float = Field(gt=0, le=20, description="Largest strain: 0.5 is 50 %.")
     points: int = Field(25, ge=2, le=400)
+    slide_quenching: bool = Field(
+        False,
+        description="Keep the yarn from sliding where it touches at rest. The published branch "
+        "does so for seed along the course, as the paper did, and has no other setting.",
+    )
+    there_and_back: bool = Field(
+        False,
+        description="Release the fabric again until it is free of force, with friction: that of "
+        "the yarn unless a coefficient is given.",
+    )
 
     @property
     def has_friction(self) -> bool:
-        """True if a coefficient is given."""
-        return self.friction is not None
+        """True if a coefficient is given, or the way back is asked for."""
+        return self.friction is not None or self.there_and_back
+
+    def _against_friction(self) -> Iterator[InputError]:
+        yield from super()._against_friction()
+        if self.slide_quenching:
+            yield InputError(
+                "slide_quenching",
+                "yarn that is kept from sliding cannot have friction.",
+                "Leave it out.",
+            )
 
 
 class SweptLaw(ElasticConstants):
@@ -75,7 +100,10 @@ class SweptLaw(ElasticConstants):
 
 
 class SweepResult(IntervalResult):
-    """A stretch, free across; sizes and energies of one stitch."""
+    """A stretch, free across; sizes and energies of one stitch.
+
+    With the way back, all lists run there and back again.
+    """
 
     kind: Literal["sweep"] = "sweep"
     direction: Direction
@@ -97,6 +125,18 @@ class SweepResult(IntervalResult):
     friction: float | None = Field(
         None, description="Coefficient of friction that was used; null without friction."
     )
+    turn: int | None = Field(
+        None,
+        description="Index of the largest strain, where the fabric turns; null without the way "
+        "back, as are the next three.",
+    )
+    lost_per_cycle_n_per_mm: float | None = Field(
+        None, description="Energy lost there and back per area of fabric, N·mm/mm²."
+    )
+    lost_share: float | None = Field(
+        None, description="Energy lost, as a share of the work of the pull."
+    )
+    left_strain: float | None = Field(None, description="Strain that remains after the release.")
     law: SweptLaw | None
     converged: bool
     seconds: float = Field(description="CPU time of the solves, when they were first run.")
@@ -108,9 +148,9 @@ class SweepResult(IntervalResult):
 def sweep(request: SweepRequest, context: Context) -> SweepResult:
     """Stress-strain curve and fitted law of the repeat; stops when the caller disconnects.
 
-    With friction, it is the first pull from the state that shaking leaves. The law is fitted to two
-    further stretches, along courses and along wales. A stretch that was run before is returned from
-    storage.
+    With friction, the first pull from the state that shaking leaves, and the release if it is asked
+    for. The law is that of pulling, fitted to two further stretches, along courses and along wales.
+    A stretch that was run before is returned from storage.
     """
     return kept_or_made(SweepResult, request.with_friction(context), context, _result)
 
@@ -120,11 +160,16 @@ def _result(
 ) -> SweepResult:
     zero = relax_requested(repeat, used, request, context)
     pulled = _pulling(zero, request, context)
-    main = pulled(request.direction, request.max_strain, points=request.points)
+    loop = _loop(zero, request, context)
+    main = (
+        loop.last_cycle
+        if loop
+        else pulled(request.direction, request.max_strain, points=request.points)
+    )
+    there = loop.turn + 1 if loop else len(main.cells)
     notes, seconds = list(main.notes), zero.seconds + main.seconds
     if request.friction is not None:
-        how = "Pulled once from the state that shaking leaves, as for the law."
-        notes += [request.friction_note(context), how]
+        notes += [request.friction_note(context), _HOW[request.there_and_back]]
     law: SimulatedLaw | None = None
     try:
         both = {}
@@ -145,10 +190,14 @@ def _result(
         cell_course_mm=zero.cell_course_mm,
         cell_wale_mm=zero.cell_wale_mm,
         friction=request.friction,
+        turn=loop and loop.turn,
+        lost_per_cycle_n_per_mm=loop and loop.lost_per_cycle_n_per_mm,
+        lost_share=loop and loop.lost_share,
+        left_strain=loop and loop.left_strain,
         strain_interval=tuple(np.sort([main.strain / FACTOR, main.strain * FACTOR], axis=0)),
         interval_source=YARN_LEVEL_ERRORS,
         law=None if law is None else _swept_law(law),
-        converged=main.converged and len(main.cells) == request.points,
+        converged=main.converged and there == request.points,
         seconds=seconds,
         yarn=YarnResult.of_chart(used),
         notes=notes,
@@ -167,7 +216,22 @@ def _pulling(zero: RelaxedCell, request: SweepRequest, context: Context) -> Call
         return partial(
             pull, on_splines(zero), coefficient=request.friction, cancelled=context.cancelled
         )
-    return partial(swept, zero, cancelled=context.cancelled)
+    return partial(
+        swept, zero, slide_quenching=request.slide_quenching or None, cancelled=context.cancelled
+    )
+
+
+def _loop(zero: RelaxedCell, request: SweepRequest, context: Context) -> Hysteresis | None:
+    """The way there and back, if it is asked for."""
+    if not request.there_and_back or request.friction is None:
+        return None
+    return request.pass_to(
+        hysteresis,
+        on_splines(zero),
+        coefficient=request.friction,
+        cycles=1,
+        cancelled=context.cancelled,
+    )
 
 
 def _jumps_fitted(stretch: Sweep, law: SimulatedLaw) -> list[str]:
@@ -190,6 +254,11 @@ def _lines(r: SweepResult) -> list[str]:
             f"{r.law.modulus_course_n_per_mm:.4f}, wale {r.law.modulus_wale_n_per_mm:.4f} N/mm, "
             f"Poisson yx {r.law.poisson_yx:.3f}, xy {r.law.poisson_xy:.3f}"
         )
+    if r.lost_per_cycle_n_per_mm is not None:
+        lines += [
+            f"lost there and back {r.lost_per_cycle_n_per_mm:.4g} N·mm/mm², "
+            f"{r.lost_share:.0%} of the work; remaining strain {r.left_strain:.3f}"
+        ]
     return [
         *lines,
         f"90 % interval of the strains of knitted cloth: a factor of {FACTOR:.1f} either way.",
@@ -210,7 +279,8 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        more="It is free across, and has no friction unless --friction is given.",
+        more="It is free across, and has no friction unless --friction or --there-and-back asks "
+        "for it.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

@@ -33,6 +33,7 @@ from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.constraints import foot_rows, plane_rows, posture_rows
 from knitcore.yarn.model.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarn.model.neighbours import EXCLUSION_RADII, neighbour_pairs
+from knitcore.yarn.model.slides import SlideConstraint
 from knitcore.yarn.model.yarn_model import YarnModel
 
 SPACING_PER_BENDING = 100.0
@@ -126,6 +127,7 @@ class CellEnergy:
     convention : factors of the terms.
     flat : the middles of all stitches are held in one plane, their feet at whole t, and stitches in
         like surroundings tip and lean alike.
+    slides : where the yarn may not slide.
     spacing_per_bending : stiffness of the spacing penalty in units of B / L.
     sliding : pairs of samples that rub in this step; None without friction.
     """
@@ -135,6 +137,7 @@ class CellEnergy:
     loop_length_mm: Array
     convention: Convention
     flat: bool = False
+    slides: tuple[SlideConstraint, ...] = ()
     spacing_per_bending: float = SPACING_PER_BENDING
     sliding: Sliding | None = None
 
@@ -187,8 +190,8 @@ class CellEnergy:
 
     @property
     def constraints(self) -> int:
-        """Number of prescribed lengths and linear rules."""
-        return len(self.prescribed_mm) + len(self.held)
+        """Number of prescribed lengths, linear rules and slides."""
+        return len(self.prescribed_mm) + len(self.held) + len(self.slides)
 
     @cached_property
     def penalty(self) -> float:
@@ -246,10 +249,11 @@ class CellEnergy:
         )
 
     def excess(self, state: Array, curve: Array) -> Array:
-        """(constraints,) lengths and linear rules less their prescribed values, mm."""
+        """(constraints,) lengths, linear rules and slides less their prescribed values, mm."""
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
         lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
-        return np.concatenate([lengths - self.prescribed_mm, times(self.held, state)])
+        slid = np.array([slide.value(state) for slide in self.slides])
+        return np.concatenate([lengths - self.prescribed_mm, times(self.held, state), slid])
 
     def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
         """Parts of the energy."""
@@ -285,7 +289,7 @@ class CellEnergy:
     ) -> Slope:  # fmt: skip
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
 
-        A sparse Hessian leaves out friction, whose Hessian is dense. The gradients of
+        A sparse Hessian leaves out slides and friction, whose Hessians are dense. The gradients of
         the constraints are left out unless ``lengths``: a large sheet's are mostly zeros.
         """
         layout, law = self.cell.layout, self.contact_law
@@ -306,10 +310,11 @@ class CellEnergy:
             slopes[:, 0] += by_d1
         gradient = scatter_gradient(force, slopes, layout)
         gradient[-2:] += force[-1, :2]
-        gradient += times(self.held.T, tension[len(self.prescribed_mm) :])
-        rows = self.held[:0]
-        if lengths:
-            rows = np.concatenate([self.length_gradients(curve), self.held])
+        slides = np.array([slide.gradient(state) for slide in self.slides])
+        rules = np.concatenate([self.held, slides.reshape(-1, len(gradient))])
+        beside = len(self.prescribed_mm)
+        gradient += times(rules.T, tension[beside:])
+        rows = np.concatenate([self.length_gradients(curve), rules]) if lengths else rules[:0]
         if not hessian:
             return Slope(gradient, rows)
         size = self.cell.unknowns
@@ -331,6 +336,8 @@ class CellEnergy:
         whole = matrix.tiles[0]
         whole[-2:] = sizes
         whole[:, -2:] = sizes.T
+        for pull, slide in zip(tension[beside + len(self.held) :], self.slides, strict=True):
+            whole += pull * slide.hessian()
         if self.sliding is not None:
             friction_hessian(*rubbing, whole)
         return Slope(gradient, rows, whole)

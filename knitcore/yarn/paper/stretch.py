@@ -70,9 +70,12 @@ class PublishedStretch:
     quenching: SlideQuenching
 
     @classmethod
-    def of(cls, zero: RelaxedCell, along: Direction) -> PublishedStretch:
-        """Stretch with slide quenching where the paper had it."""
-        return cls(zero, along, SlideQuenching.default(published_fabric(zero.chart), along))
+    def of(cls, zero: RelaxedCell, along: Direction, quenched: bool | None) -> PublishedStretch:
+        """Stretch with slide quenching or without; by default where the paper had it."""
+        quenching = SlideQuenching.default(published_fabric(zero.chart), along)
+        if quenched is not None:
+            quenching = SlideQuenching.PAPER if quenched else SlideQuenching.NONE
+        return cls(zero, along, quenching)
 
     @property
     def note(self) -> str:

@@ -83,7 +83,7 @@ def grow(
         wale_per_loop=start.wale * WALE_PER_LOOP,
     )
     state = shaken(cell, state, start.noise * radius, start.seed)
-    energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, spacing_per_bending)
+    energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, (), spacing_per_bending)
     core = core_that_fits(yarn, clearance_at(energy, state).min_distance_mm, FIRST_OPENING)
     tension: Array | None = None
     settings = STAGE if cell.stitches < SPARSE_FROM else _SHORT_STAGE

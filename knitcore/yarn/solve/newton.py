@@ -192,7 +192,8 @@ class _Descent:
         self.held, self.goal = held, goal
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
         self.damping = options.damping * self.first_damping
-        self.sparse = energy.cell.stitches >= SPARSE_FROM and energy.sliding is None
+        dense_only = energy.slides or energy.sliding is not None
+        self.sparse = energy.cell.stitches >= SPARSE_FROM and not dense_only
         self.single = self.sparse
         self.dissection = Dissection()
         self.room = Room()

@@ -32,6 +32,7 @@ from knitcore.yarn.model.input_checks import (
     is_at_rest,
 )
 from knitcore.yarn.model.relaxed_cell import Branch, RelaxedCell, StartReport
+from knitcore.yarn.model.slides import SlideConstraint
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.tiling import centre_lines, refined_state
 from knitcore.yarn.model.yarn_model import YarnModel
@@ -79,6 +80,7 @@ class RelaxedRepeat(RelaxedCell):
     cell : shape space; ``state`` are its unknowns.
     tension_n : tension of every course (or stitch) of the cell, then the forces that hold it flat.
     flat : the middles of all stitches were held in one plane.
+    slides : where the yarn was kept from sliding.
     minimum : whether it is a minimum without the symmetries of the chart; None where this was not
         found out, and where more was prescribed than one length for every course.
     mirrored : the state with these symmetries that led to this one; None if none did.
@@ -89,6 +91,7 @@ class RelaxedRepeat(RelaxedCell):
     cell: YarnCell
     tension_n: Array
     flat: bool = False
+    slides: tuple[SlideConstraint, ...] = ()
     minimum: bool | None = None
     mirrored: RelaxedRepeat | None = None
     other_minima_mm: tuple[tuple[float, float], ...] = ()
@@ -97,7 +100,7 @@ class RelaxedRepeat(RelaxedCell):
     def held(self) -> bool:
         """Tell whether more than symmetries and the yarn of each course holds it."""
         per_stitch = self.loop_lengths_mm.ndim > 1
-        return bool(self.flat or per_stitch) or not is_at_rest(self)
+        return bool(self.flat or self.slides or per_stitch) or not is_at_rest(self)
 
     @property
     def control_points(self) -> Array:
@@ -111,7 +114,9 @@ class RelaxedRepeat(RelaxedCell):
     @property
     def energy(self) -> CellEnergy:
         """The energy whose minimum this is."""
-        return CellEnergy(self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat)
+        return CellEnergy(
+            self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat, self.slides
+        )
 
 
 def relax_splines(
@@ -243,7 +248,11 @@ def check_unheld(relaxed: RelaxedRepeat) -> None:
     """
     check_at_rest(relaxed, "relaxed")
     if relaxed.held:
-        how = "it is held flat" if relaxed.flat else "it has a loop length for every stitch"
+        how = (
+            "it is held flat" if relaxed.flat
+            else "its yarn is kept from sliding" if relaxed.slides
+            else "it has a loop length for every stitch"
+        )  # fmt: skip
         raise InputError("relaxed", f"{how}.", "Relax it with one loop length and nothing held.")
 
 
@@ -287,6 +296,7 @@ def relaxed_repeat(
         min_distance_mm=minimum.min_distance_mm,
         starts=starts,
         flat=energy.flat,
+        slides=energy.slides,
         other_minima_mm=sizes,
     )
 

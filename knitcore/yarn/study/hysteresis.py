@@ -95,6 +95,19 @@ class Hysteresis(Result):
     lost_n_mm: Array
 
     @property
+    def last_cycle(self) -> Sweep:
+        """The last cycle as one stretch, there and back; ``jumps`` are those of the way there."""
+        there, back = self.legs[-2:]
+        stress = np.concatenate([there.stress_n_per_mm, back.stress_n_per_mm[1:]])
+        cells = (*there.cells, *back.cells[1:])
+        return Sweep(self.direction, self.zero, cells, stress, there.jumps, self.notes)
+
+    @property
+    def turn(self) -> int:
+        """Index in the last cycle at which the release begins, that of its largest strain."""
+        return len(self.legs[-2].cells) - 1
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Remarks for the user, in sentences."""
         notes = dict.fromkeys(note for leg in self.legs for note in leg.notes)

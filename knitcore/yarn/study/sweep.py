@@ -18,14 +18,22 @@ from typing import Protocol
 import numpy as np
 
 from knitcore.base.arrays import Array, sum_in_order
-from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
+from knitcore.base.errors import (
+    Cancelled,
+    ConvergenceError,
+    InputError,
+    UnravelledError,
+    check_cancelled,
+)
 from knitcore.chart.fabric import Direction
 from knitcore.yarn.model.input_checks import check_at_rest, check_stretch
 from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
+from knitcore.yarn.model.slides import slides_at
 from knitcore.yarn.paper.stretch import PublishedStretch
 from knitcore.yarn.solve.newton import COURSE, WALE, Options, minimise
 from knitcore.yarn.solve.search import SAME_ENERGY, check_reached
-from knitcore.yarn.solve.splines import RelaxedRepeat, relaxed_repeat
+from knitcore.yarn.solve.splines import MAX_STITCHES_RULED, RelaxedRepeat, relaxed_repeat
+from knitcore.yarn.solve.topology import clearance_at
 
 DEFAULT_POINTS = 25
 _OFF_WORK = 0.1
@@ -70,7 +78,7 @@ class SplineStretch:
 
     Parameters
     ----------
-    zero : the relaxed repeat.
+    zero : the relaxed repeat, with its slide constraints.
     along : the direction.
     cancelled : called before every step of the solver.
     """
@@ -79,8 +87,22 @@ class SplineStretch:
     along: Direction
     cancelled: Cancelled | None = None
 
-    note = ""
-    """Nothing but the length of the yarn is held."""
+    @classmethod
+    def of(
+        cls,
+        zero: RelaxedRepeat,
+        along: Direction,
+        slide_quenching: bool,
+        cancelled: Cancelled | None,
+    ) -> SplineStretch:
+        """The stretch of a relaxed repeat, its slides held or not."""
+        return cls(with_slides_held(zero) if slide_quenching else zero, along, cancelled)
+
+    @property
+    def note(self) -> str:
+        """How many slides are held; empty if none is."""
+        held = len(self.zero.slides)
+        return f"Slide quenching: {held} slides are held." if held else ""
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
         """The relaxed state with one size prescribed, continued from the last state.
@@ -124,6 +146,29 @@ class SplineStretch:
         )  # fmt: skip
 
 
+def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
+    """Keep the yarn of a state from sliding where it touches.
+
+    Raises
+    ------
+    InputError
+        If the cell is too large.
+    """
+    if cell.cell.stitches > MAX_STITCHES_RULED:
+        raise InputError(
+            "slide_quenching",
+            f"is not available for a cell of {cell.cell.stitches} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES_RULED} stitches.",
+        )
+    energy = replace(cell.energy, slides=())
+    near = clearance_at(energy, cell.state)
+    slides = slides_at(
+        cell.cell, cell.state, near.pairs, near.distances_mm, near.touch_mm, energy.mean_loop_mm
+    )
+    tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(slides))])
+    return replace(cell, slides=slides, tension_n=tension)
+
+
 def sweep(
     zero: RelaxedCell,
     direction: Direction | str,
@@ -132,6 +177,7 @@ def sweep(
     points: int = DEFAULT_POINTS,
     max_stress_n_per_mm: float | None = None,
     back: bool = True,
+    slide_quenching: bool | None = None,
     cancelled: Cancelled | None = None,
 ) -> Sweep:
     """Stretch in one direction, the other free of force.
@@ -146,13 +192,15 @@ def sweep(
     points : number of strains, the first of them 0.
     max_stress_n_per_mm : stop the way out beyond this nominal stress.
     back : also go back from the end and keep the lower state of each strain.
+    slide_quenching : keep the yarn from sliding where it touches at rest; by default only in the
+        published branch, and there as the paper did, for seed along the course.
     cancelled : called before every point; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If a size of the repeat is held, or the strain, the stress or the number of points cannot
-        be used.
+        If a size of the repeat is held, the strain, the stress or the number of points cannot be
+        used, or the cell is too large for slide quenching.
     CancelledError
         If ``cancelled`` says so.
     """
@@ -160,9 +208,9 @@ def sweep(
     check_stretch(max_strain, points, max_stress_n_per_mm)
     check_at_rest(zero, "zero")
     if isinstance(zero, RelaxedRepeat):
-        stretch: Stretch = SplineStretch(zero, along, cancelled)
+        stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancelled)
     else:
-        stretch = PublishedStretch.of(zero, along)
+        stretch = PublishedStretch.of(zero, along, slide_quenching)
     return follow(
         stretch, zero, along, np.linspace(0.0, max_strain, points),
         max_stress_n_per_mm=max_stress_n_per_mm, back=back, cancelled=cancelled,

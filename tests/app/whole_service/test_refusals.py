@@ -135,8 +135,8 @@ REQUESTS: list[tuple[str, dict[str, Any], str, str]] = [
         "sweep",
         YARN
         | {"direction": "course", "max_strain": 0.2}
-        | {"friction": 0.2, "branch": "published", "flat": True},
-        "branch flat",
+        | {"there_and_back": True, "slide_quenching": True, "flat": True},
+        "flat slide_quenching",
         "",
     ),
     (

@@ -59,6 +59,16 @@ def test_a_loop_of_too_few_points_says_so(stockinette):
     assert "differ by 26 %: take more points" in note
 
 
+def test_the_last_cycle_is_one_stretch_there_and_back(loop):
+    cycle, (there, back) = loop.last_cycle, loop.legs[-2:]
+    assert np.argmax(cycle.strain) == loop.turn == len(there.strain) - 1
+    np.testing.assert_array_equal(cycle.strain, [*there.strain, *back.strain[1:]])
+    np.testing.assert_array_equal(
+        cycle.stress_n_per_mm, [*there.stress_n_per_mm, *back.stress_n_per_mm[1:]]
+    )
+    assert cycle.energy_n_mm[loop.turn] > cycle.energy_n_mm[-1]
+
+
 def test_a_pull_is_the_first_leg_of_a_loop(stockinette, loop):
     alone = pull(stockinette, "course", 0.2, 0.25, points=11)
     np.testing.assert_allclose(alone.stress_n_per_mm, loop.legs[0].stress_n_per_mm, rtol=1e-9)
