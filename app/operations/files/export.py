@@ -12,7 +12,7 @@ from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_wor
 from knitcore.formats.designs.layout import DesignLayout
 from knitcore.formats.write.chart_key import Symbols
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
-from knitcore.formats.write.knitout import Finish
+from knitcore.machine.program import Finish
 
 from ...cli.options import out_option
 from ...context import Context

@@ -1,6 +1,6 @@
 """Knitout programs read as charts.
 
-A program is knitted (:mod:`knitcore.formats.read.knitout_machine`), the piece is told from waste
+A program is knitted (:mod:`knitcore.machine.knitout_machine`), the piece is told from waste
 (:mod:`knitcore.formats.read.knitout_parts`), and its stitches are put into courses and wales
 (:mod:`knitcore.formats.read.knitout_courses`): all from the graph of loops, not from names. A
 program of this library is executed by the package ``knitout-interpreter`` too before it is
@@ -23,11 +23,11 @@ from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.read.chart_files import PieceInFile
 from knitcore.formats.read.knitout_courses import KnittedCourses, fabric_of
-from knitcore.formats.read.knitout_machine import Loop, knitting_of
 from knitcore.formats.read.knitout_parts import main_part, named, part_knitted_by
-from knitcore.formats.write.knitout import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
+from knitcore.machine.knitout_machine import Loop, knitting_of
+from knitcore.machine.program import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
 
 MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\S+) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)

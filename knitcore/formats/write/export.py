@@ -22,7 +22,6 @@ from knitcore.formats.write.chart_key import (
     multiple_words,
 )
 from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg, to_pdf
-from knitcore.formats.write.knitout import Finish
 from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
 from knitcore.formats.write.png import write_png
@@ -32,6 +31,7 @@ from knitcore.formats.write.written_pattern import write_rows
 from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
+from knitcore.machine.program import Finish
 from knitcore.materials import Material
 from knitcore.prediction.size import RelaxedSize
 

@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.formats.read.knitout_reader import KnitoutMismatchError, knitted_chart, verified
-from knitcore.formats.write.knitout import Finish, knitout_program
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
+from knitcore.machine.program import Finish, knitout_program
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
 

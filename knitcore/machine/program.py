@@ -23,8 +23,8 @@ import numpy as np
 
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.write.carriers import CarrierPlan, CarrierRow, plan_carriers
 from knitcore.garment.piece import Piece
+from knitcore.machine.carriers import CarrierPlan, CarrierRow, plan_carriers
 
 MAX_NEEDLES = 540
 """Needles of one bed of a wide machine (Shima Seiki SWG091N2), and of the interpreter's."""
