@@ -227,8 +227,12 @@ class _Body:
             self._back[column], self._held[column] = bool(beds[column]), 1
 
     def _cross(self, row: int) -> Iterator[str]:
-        for column in range(*self._spans[row]):
-            yield from self._to_bed(column, back=bool(self._piece.chart.purl[row, column]))
+        """Loops that go to the back in one pass, and those that come to the front in another."""
+        purl = self._piece.chart.purl[row]
+        for back in (True, False):
+            for column in range(*self._spans[row]):
+                if purl[column] == back:
+                    yield from self._to_bed(column, back=back)
 
     def _to_bed(self, column: int, *, back: bool) -> Iterator[str]:
         if self._back[column] != back:

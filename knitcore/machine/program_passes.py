@@ -209,7 +209,7 @@ class _Reader:
         if last is None or (last.kind, last.bed, last.rack) != ("transfer", here.bed, self._rack):
             self.close()
             last = ProgramPass("transfer", self._line, self._rack, None, here.bed)
-            last.pulls = self._pulls() if self._rack else frozenset()
+            last.pulls = self._pulls()
             self.reading.passes.append(last)
         self._moved = True
         self._count(last, here)

@@ -71,3 +71,9 @@ def test_passes_of_a_chart_count_its_courses_and_transfers() -> None:
     moved = sum(step.loops for step in steps if step.kind == "transfer")
     assert moved == program.transfers + program.shaping_transfers
     assert sum(step.kind == "transfer" for step in steps) == 3
+
+
+def test_transfers_of_a_course_are_one_pass_to_each_bed() -> None:
+    program = knitout_program(StitchChart.of_fabric("seed", rows=4, columns=6))
+    steps = [step for step in read_passes(program.text).passes if step.kind == "transfer"]
+    assert [(step.bed, step.loops) for step in steps] == [("f", 3), ("b", 3)] * 3
