@@ -1,4 +1,4 @@
-"""What a program takes on a machine: passes, minutes, yarn, cost, and its tightest loops."""
+"""The passes, minutes, yarn, cost and tightest loops of a program on a machine."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Any
 from knitcore.base.bounds import check_positive
 from knitcore.machine.profile import MachineProfile
 from knitcore.machine.program_passes import ProgramPass, ProgramReading, read_passes
-from knitcore.machine.tension import LoopYarn, PassTension, pass_tensions, tightest_of
+from knitcore.machine.tension import LoopTension, LoopYarn, PassTension, pass_tensions, tightest_of
 
 RUN_OUT_NEEDLES = 6
 """Needles that the carriage passes beyond its work on each side; a stated guess."""
@@ -15,7 +15,7 @@ RUN_OUT_NEEDLES = 6
 
 @dataclass(frozen=True)
 class CarrierYarn:
-    """What a carrier lays.
+    """The yarn that a carrier lays.
 
     Attributes
     ----------
@@ -31,8 +31,31 @@ class CarrierYarn:
 
 
 @dataclass(frozen=True)
+class KindOfTransfer:
+    """Passes of transfers whose tightest loops are alike.
+
+    Attributes
+    ----------
+    rack : in needles, to either side.
+    passes, transfers : how many.
+    line : the first of them in the program.
+    tightest : None if no loop is pulled.
+    """
+
+    rack: float
+    passes: int
+    transfers: int
+    line: int
+    tightest: LoopTension | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Collect the figures by name."""
+        return {**vars(self), "tightest": self.tightest and self.tightest.to_dict()}
+
+
+@dataclass(frozen=True)
 class ProgramReport:
-    """What a program takes on a machine.
+    """The figures of a program on a machine.
 
     Attributes
     ----------
@@ -69,6 +92,18 @@ class ProgramReport:
         """The pass of transfers with the tightest loop."""
         return tightest_of(self.tensions)
 
+    @property
+    def kinds_of_transfer(self) -> tuple[KindOfTransfer, ...]:
+        """Passes of transfers whose tightest loops are alike, the tightest first."""
+        kinds: dict[tuple[float, LoopTension | None], list[PassTension]] = {}
+        for step in self.tensions:
+            kinds.setdefault((abs(step.rack), step.tightest), []).append(step)
+        rows = [
+            KindOfTransfer(rack, len(steps), sum(s.transfers for s in steps), steps[0].line, pull)
+            for (rack, pull), steps in kinds.items()
+        ]
+        return tuple(sorted(rows, key=lambda row: -(row.tightest.tension_n if row.tightest else 0)))
+
     def to_dict(self) -> dict[str, Any]:
         """Collect the figures by name."""
         return {
@@ -76,6 +111,7 @@ class ProgramReport:
             "passes": self.passes,
             "yarns": [vars(yarn) for yarn in self.yarns],
             "tensions": [step.to_dict() for step in self.tensions],
+            "kinds_of_transfer": [kind.to_dict() for kind in self.kinds_of_transfer],
             "tightest": self.tightest and self.tightest.to_dict(),
             "sources": list(self.sources),
         }
@@ -93,11 +129,11 @@ class ProgramReport:
         ]
         if self.cost is not None:
             lines.append(f"cost {self.cost:.2f}")
-        if self.tightest:
-            lines.append(
-                f"tightest loop, line {self.tightest.line}, rack {self.tightest.rack:g}: "
-                f"{self.tightest.tightest}"
-            )
+        lines += [
+            f"rack {kind.rack:g}: {kind.passes} passes, {kind.transfers} transfers, tightest loop "
+            f"{kind.tightest or 'at rest'} (line {kind.line})"
+            for kind in self.kinds_of_transfer
+        ]
         return lines
 
 
@@ -110,7 +146,7 @@ def program_report(
     price_per_kg: float | None = None,
     price_per_hour: float | None = None,
 ) -> ProgramReport:
-    """Report what a program takes.
+    """Report the figures of a program on a machine.
 
     Parameters
     ----------

@@ -175,7 +175,7 @@ class LoopTension:
     Attributes
     ----------
     needles, across : between its hooks.
-    tension_n, interval_n : the middle, and a 90 % interval.
+    tension_n, tension_interval_n : the middle, and a 90 % interval.
     needed_mm, own_mm : yarn that the way needs, and that the stitch has.
     stretch : strain of the yarn.
     break_chance : of breaking.
@@ -185,7 +185,7 @@ class LoopTension:
     needles: float
     across: bool
     tension_n: float
-    interval_n: Interval
+    tension_interval_n: Interval
     needed_mm: float
     own_mm: float
     stretch: float
@@ -193,7 +193,7 @@ class LoopTension:
     verdict: Verdict
 
     def __str__(self) -> str:
-        low, high = self.interval_n
+        low, high = self.tension_interval_n
         return (
             f"{self.verdict}: {self.needles:g} needles apart{' across the gap' * self.across}, "
             f"{self.tension_n:.2g} N ({low:.2g} to {high:.2g})"
@@ -205,7 +205,7 @@ class LoopTension:
             "needles": self.needles,
             "across": self.across,
             "tension_n": self.tension_n,
-            "interval_n": list(self.interval_n),
+            "tension_interval_n": list(self.tension_interval_n),
             "needed_mm": self.needed_mm,
             "own_mm": self.own_mm,
             "stretch": self.stretch,

@@ -52,7 +52,7 @@ def test_tension_grows_with_the_needles_between_the_hooks() -> None:
     values = [of.tension_n for of in tensions]
     assert values == sorted(values)
     for of in tensions:
-        low, high = of.interval_n
+        low, high = of.tension_interval_n
         assert low < of.tension_n < high
 
 
