@@ -74,6 +74,11 @@ SECTIONS: dict[str, dict[str, Entry]] = {
     "Files": {
         "import": ("files.imports", "Read the chart in FILE."),
         "export": ("files.export", "Write CHART for machines, knitters or other programs."),
+        "program": (
+            "machine.program_report",
+            "Report passes, tightest loop, minutes and yarn of a program.",
+        ),
+        "dial": ("machine.dial", "Give a machine's stitch number for a loop length."),
     },
     "Serve": {
         "serve": (".serve:command", ""),

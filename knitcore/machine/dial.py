@@ -53,8 +53,8 @@ class DialSwatch:
 
         Examples
         --------
-        >>> DialSwatch.weighed(6, mass_g=4.2, tex=250, stitches=1600).loop_length_mm
-        10.5
+        >>> DialSwatch.weighed(6, mass_g=4.0, tex=250, stitches=1600).loop_length_mm
+        10.0
         """
         return cls(number, mass_g / tex * 1e6 / stitches)
 

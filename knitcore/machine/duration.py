@@ -67,7 +67,7 @@ class ProgramReport:
     yarns : by carrier.
     cost : of yarn and machine; None without a price.
     tensions : passes of transfers, each with its tightest loop.
-    sources : where times and tensions come from, in words.
+    time_source, tension_source : where times and tensions come from, in words.
     """
 
     machine: str
@@ -80,12 +80,18 @@ class ProgramReport:
     yarns: tuple[CarrierYarn, ...]
     cost: float | None
     tensions: tuple[PassTension, ...]
-    sources: tuple[str, ...]
+    time_source: str
+    tension_source: str
 
     @property
     def passes(self) -> int:
         """All passes of the carriage."""
         return self.knit_passes + self.transfer_passes + self.empty_passes
+
+    @property
+    def time_note(self) -> str:
+        """The sentence that says how sure the minutes are."""
+        return f"Minutes are without stops; time of a pass: {self.time_source}."
 
     @property
     def tightest(self) -> PassTension | None:
@@ -113,7 +119,6 @@ class ProgramReport:
             "tensions": [step.to_dict() for step in self.tensions],
             "kinds_of_transfer": [kind.to_dict() for kind in self.kinds_of_transfer],
             "tightest": self.tightest and self.tightest.to_dict(),
-            "sources": list(self.sources),
         }
 
     def lines(self) -> list[str]:
@@ -186,7 +191,8 @@ def program_report(
         yarns,
         cost,
         pass_tensions(program, yarn, machine),
-        (f"times: {machine.source('times')}", f"tension: {yarn.source}"),
+        machine.source("times"),
+        yarn.source,
     )
 
 

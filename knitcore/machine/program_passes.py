@@ -31,7 +31,7 @@ class Link(NamedTuple):
     laid: float
 
 
-class Pull(NamedTuple):
+class PulledLink(NamedTuple):
     """A link that is pulled, and its neighbours outwards on either side."""
 
     link: Link
@@ -41,7 +41,7 @@ class Pull(NamedTuple):
 
 def pulls_of(
     places: Sequence[Needle | None], laid: Sequence[float], rack: float
-) -> frozenset[Pull]:
+) -> frozenset[PulledLink]:
     """The pulls on loops of one yarn at a racking, in the yarn's order; None is not held.
 
     Links between neighbouring needles of one bed are at rest and are left out.
@@ -54,7 +54,7 @@ def pulls_of(
             apart = abs(_position(a, rack) - _position(b, rack))
             links.append(Link(apart, a.bed != b.bed, span))
     return frozenset(
-        Pull(link, *sorted((_outwards(links[:i][::-1]), _outwards(links[i + 1 :]))))
+        PulledLink(link, *sorted((_outwards(links[:i][::-1]), _outwards(links[i + 1 :]))))
         for i, link in enumerate(links)
         if link is not None and (link.across or link.needles > max(link.laid, 1))
     )
@@ -102,7 +102,7 @@ class ProgramPass:
     high: float = 0.0
     tucks: int = 0
     knits: int = 0
-    pulls: frozenset[Pull] = frozenset()
+    pulls: frozenset[PulledLink] = frozenset()
 
 
 @dataclass
@@ -267,7 +267,7 @@ class _Reader:
         step.high = max(step.high, at) if step.loops else at
         step.loops += 1
 
-    def _pulls(self) -> frozenset[Pull]:
+    def _pulls(self) -> frozenset[PulledLink]:
         return frozenset(
             pull
             for loops in self._held_strands()

@@ -35,7 +35,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.garment.regions import LOOP_LENGTH_LOG_SD
 from knitcore.machine.profile import MachineProfile
-from knitcore.machine.program_passes import Link, Pull, pulls_of, read_passes
+from knitcore.machine.program_passes import Link, PulledLink, pulls_of, read_passes
 from knitcore.machine.transfers import LoopMove, TransferPlan, plan_transfers
 from knitcore.materials import Interval, Material
 from knitcore.materials.estimate.without_tester import COUNTED_TEX
@@ -214,7 +214,7 @@ class LoopTension:
         }
 
 
-def loop_tension(pull: Pull, yarn: LoopYarn, machine: MachineProfile) -> LoopTension:
+def loop_tension(pull: PulledLink, yarn: LoopYarn, machine: MachineProfile) -> LoopTension:
     """The tension of a pulled link of yarn.
 
     Examples
@@ -222,7 +222,7 @@ def loop_tension(pull: Pull, yarn: LoopYarn, machine: MachineProfile) -> LoopTen
     >>> from knitcore.machine.profile import profile
     >>> from knitcore.materials import material
     >>> rest = Link(1, False, 1)
-    >>> pull = Pull(Link(1, True, 1), (rest,) * 3, (rest,) * 3)
+    >>> pull = PulledLink(Link(1, True, 1), (rest,) * 3, (rest,) * 3)
     >>> yarn = LoopYarn.of(material("acrylic"), loop_length_mm=11.3)
     >>> loop_tension(pull, yarn, profile("kniterate")).verdict
     <Verdict.FREE: 'free'>
@@ -231,7 +231,9 @@ def loop_tension(pull: Pull, yarn: LoopYarn, machine: MachineProfile) -> LoopTen
 
 
 @lru_cache(maxsize=10_000)
-def _loop_tension(pull: Pull, yarn: LoopYarn, pitch_mm: float, per_column: int) -> LoopTension:
+def _loop_tension(
+    pull: PulledLink, yarn: LoopYarn, pitch_mm: float, per_column: int
+) -> LoopTension:
     draws = _draws(yarn, pitch_mm, per_column)
     tension = draws.tension(pull)
     middle = float(np.median(tension))
@@ -305,7 +307,7 @@ class _Draws:
             total += np.where(on, spare, 0)
         return total
 
-    def tension(self, pull: Pull) -> Array:
+    def tension(self, pull: PulledLink) -> Array:
         """Bisect the balance of yarn, N."""
         low, high = np.log(self._pull * (1 + 1e-6)), np.full(SAMPLES, math.log(1e5))
         for _ in range(_STEPS):
@@ -323,7 +325,7 @@ _draws = lru_cache(maxsize=10)(_Draws)
 
 
 def _tightest(
-    pulls: frozenset[Pull], yarn: LoopYarn, machine: MachineProfile
+    pulls: frozenset[PulledLink], yarn: LoopYarn, machine: MachineProfile
 ) -> LoopTension | None:
     tensions = (loop_tension(pull, yarn, machine) for pull in pulls)
     return max(tensions, key=lambda of: (of.break_chance, of.tension_n), default=None)
@@ -380,7 +382,7 @@ def plan_tension(plan: TransferPlan, yarn: LoopYarn, machine: MachineProfile) ->
     racks = [step.rack for step in plan.passes]
     states = [*zip(plan.places, racks, strict=False), *zip(plan.places[1:], racks, strict=True)]
     pulls = (pulls_of(places, laid, rack) for places, rack in [*states, (plan.places[-1], 0)])
-    return _tightest(frozenset[Pull]().union(*pulls), yarn, machine)
+    return _tightest(frozenset[PulledLink]().union(*pulls), yarn, machine)
 
 
 @dataclass(frozen=True)

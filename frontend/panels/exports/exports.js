@@ -3,7 +3,7 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../state/studio.js"
- * @import {ExportRequest, ExportResult, Extensions} from "../../types.js"
+ * @import {ExportRequest, ExportResult, Extensions, ProgramReportRequest} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
  */
 
@@ -18,6 +18,7 @@ import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
+import { reportTable } from "./programreport.js";
 import { textButton } from "../../widgets/buttons.js";
 import { attempt } from "../../widgets/problem.js";
 
@@ -165,7 +166,17 @@ export function create(studio, { view }) {
     make.disabled = false;
     outcome.replaceChildren();
     const notes = bare ? ["without a picture: none could be made"] : [];
-    if (file) show({ ...file, notes: [...file.notes, ...notes] }, format);
+    if (!file) return;
+    show({ ...file, notes: [...file.notes, ...notes] }, format);
+    if (format.to === "knitout") await explain(/** @type {ExportRequest} */ (body));
+  }
+
+  /** Time, yarn and tension of a program, below the file. @param {Partial<ExportRequest>} request of the file */
+  async function explain(request) {
+    const { chart, outline, regions, material, finish, gauge, linear_density_tex } = request;
+    const body = { chart, outline, regions, material, finish, gauge, linear_density_tex };
+    const report = await attempt(status, () => api.run("program-report", /** @type {ProgramReportRequest} */ (body)));
+    if (report) outcome.children[0]?.after(reportTable(report));
   }
 
   /** What the 3D view shows, or else what the service draws of it, base64; null where neither can be had. */

@@ -64,7 +64,7 @@ export const KINDS = [
     ["knitspeak", "KnitSpeak", "for Stitch Maps and other tools; rectangular charts only", ["worked"], true],
   ]),
   ...kinds("For a machine", [
-    ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish"], true],
+    ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish", "tex"], true],
   ]),
   ...kinds("Data and files", [
     ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],

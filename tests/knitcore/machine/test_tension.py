@@ -6,7 +6,7 @@ import pytest
 
 from knitcore.base.errors import InputError
 from knitcore.machine.profile import profile
-from knitcore.machine.program_passes import Link, Pull
+from knitcore.machine.program_passes import Link, PulledLink
 from knitcore.machine.tension import (
     BREAK_CHANCE,
     BREAK_RISK,
@@ -27,9 +27,9 @@ WOOL = LoopYarn.of(material("glove-wool"), loop_length_mm=10, linear_density_tex
 REST = Link(1, False, 1)
 
 
-def pulled(needles: float, *, across: bool = True, neighbours: int = 3) -> Pull:
+def pulled(needles: float, *, across: bool = True, neighbours: int = 3) -> PulledLink:
     beside = (REST,) * neighbours
-    return Pull(Link(needles, across, 1), beside, beside)
+    return PulledLink(Link(needles, across, 1), beside, beside)
 
 
 def cable(width: int) -> list[LoopMove]:
@@ -58,7 +58,7 @@ def test_tension_grows_with_the_needles_between_the_hooks() -> None:
 
 def test_without_neighbours_the_yarn_stretches_by_what_is_lacking() -> None:
     known = replace(WOOL, friction_interval=(0.25, 0.2500001))
-    alone = loop_tension(Pull(Link(3, True, 1), (), ()), known, KNITERATE)
+    alone = loop_tension(PulledLink(Link(3, True, 1), (), ()), known, KNITERATE)
     lacking = (alone.needed_mm - alone.own_mm) / (alone.own_mm - 1.9)
     assert alone.stretch == pytest.approx(lacking, rel=0.1)
     assert alone.tension_n == pytest.approx(alone.stretch * WOOL.axial_stiffness_n)
@@ -73,7 +73,7 @@ def test_neighbours_lend_less_the_more_friction_holds_their_yarn() -> None:
 
 def test_yarn_laid_as_a_float_is_there_to_be_used() -> None:
     rested, floated = (
-        loop_tension(Pull(Link(4, False, laid), (REST,), (REST,)), WOOL, KNITERATE)
+        loop_tension(PulledLink(Link(4, False, laid), (REST,), (REST,)), WOOL, KNITERATE)
         for laid in (1, 4)
     )
     assert rested.verdict is not Verdict.FREE
