@@ -148,6 +148,9 @@ class MachineProfile:
     speed, roller_advance : None if a program does not set them.
     waste_passes : of waste yarn before a piece, for machines without hooks.
     longest_float_needles : beyond which a float catches on hooks and fingers.
+    bed_gap_mm : from a hook to the one that it faces, in a transfer; None takes a stated guess in
+        proportion to the distance of the needles.
+    take_down_n : force on each loop; None takes a stated guess.
     sources : where figures come from, by field; the empty name stands for all others.
     """
 
@@ -172,6 +175,8 @@ class MachineProfile:
     speed: ProgramNumbers | None = None
     roller_advance: ProgramNumbers | None = None
     fabric_presser: bool = False
+    bed_gap_mm: _Above | None = None
+    take_down_n: _Above | None = None
     waste_passes: Annotated[int, Field(ge=2, le=200)] = 70
     format: Literal["knitcore-machine"] = field(default="knitcore-machine", repr=False)
     version: Literal[1] = field(default=1, repr=False)

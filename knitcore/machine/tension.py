@@ -18,7 +18,8 @@ has one solution for T. Sources: the form of robbing back is that of J. J. F. Kn
 Munden, "A study of the mechanism of loop formation on weft-knitting machinery", Textile Research
 Journal 36 (1966); friction of yarn is :func:`knitcore.yarn.library.yarns.yarn_friction`. Strength
 and stretch of yarns, the gap, the take-down and the angle of wrap are stated guesses
-(:data:`GUESSES`), so tensions have wide 90 % intervals, which come from drawing all of them.
+(:data:`GUESSES`), so tensions have wide 90 % intervals, which come from drawing all of them. A
+machine's profile may give gap and take-down, and :class:`LoopYarn` the yarn's strength.
 """
 
 import math
@@ -27,7 +28,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -227,14 +228,24 @@ def loop_tension(pull: PulledLink, yarn: LoopYarn, machine: MachineProfile) -> L
     >>> loop_tension(pull, yarn, profile("kniterate")).verdict
     <Verdict.FREE: 'free'>
     """
-    return _loop_tension(pull, yarn, machine.pitch_mm, machine.needles_per_column)
+    hooks = _Hooks(
+        machine.pitch_mm, machine.needles_per_column, machine.bed_gap_mm, machine.take_down_n
+    )
+    return _loop_tension(pull, yarn, hooks)
+
+
+class _Hooks(NamedTuple):
+    """The figures of a machine that a loop feels; None is guessed."""
+
+    pitch_mm: float
+    per_column: int
+    gap_mm: float | None
+    take_down_n: float | None
 
 
 @lru_cache(maxsize=10_000)
-def _loop_tension(
-    pull: PulledLink, yarn: LoopYarn, pitch_mm: float, per_column: int
-) -> LoopTension:
-    draws = _draws(yarn, pitch_mm, per_column)
+def _loop_tension(pull: PulledLink, yarn: LoopYarn, hooks: _Hooks) -> LoopTension:
+    draws = _draws(yarn, hooks)
     tension = draws.tension(pull)
     middle = float(np.median(tension))
     needed, own = float(np.median(draws.span(pull.link))), float(np.median(draws.yarn(pull.link)))
@@ -264,15 +275,20 @@ def _loop_tension(
 class _Draws:
     """Draws of everything uncertain, (samples,) each."""
 
-    def __init__(self, yarn: LoopYarn, pitch_mm: float, per_column: int) -> None:
+    def __init__(self, yarn: LoopYarn, hooks: _Hooks) -> None:
         noise = dict(
             zip(LOG_SDS, np.random.default_rng(0).standard_normal((5, SAMPLES)), strict=True)
         )
         scale = {name: np.exp(sd * noise[name]) for name, sd in LOG_SDS.items()}
-        self._pitch, self._columns = pitch_mm, per_column
+        pitch_mm = hooks.pitch_mm
+        self._pitch, self._columns = pitch_mm, hooks.per_column
         self._length = yarn.loop_length_mm * scale["loop"]
-        self._gap = GAP_PITCHES * pitch_mm * scale["gap"]
-        self._pull = TAKE_DOWN_N * scale["take_down"] / 2
+        gap = GAP_PITCHES * pitch_mm * scale["gap"]
+        self._gap = gap if hooks.gap_mm is None else np.full(SAMPLES, hooks.gap_mm)
+        force = TAKE_DOWN_N * scale["take_down"]
+        self._pull = (
+            force if hooks.take_down_n is None else np.full(SAMPLES, hooks.take_down_n)
+        ) / 2
         low, high = yarn.friction_interval
         spread = math.log(high / low) / (2 * 1.645)
         other = np.random.default_rng(1).standard_normal(SAMPLES)
@@ -405,8 +421,15 @@ def plan_safely(moves: Sequence[LoopMove], yarn: LoopYarn, machine: MachineProfi
     Raises
     ------
     InputError
-        If every plan would break the yarn; the remedy is the loop length that stands it.
+        If the machine has one bed, or every plan would break the yarn; the remedy is then the loop
+        length that stands it.
     """
+    if machine.beds == 1:
+        raise InputError(
+            "machine",
+            f"{machine.name} has no second bed to transfer to.",
+            "Move the loops by hand with a transfer tool, or choose a machine with two beds.",
+        )
     plans: list[SafePlan] = []
     for most_rack in range(int(machine.racking.most_needles), -1, -1):
         try:

@@ -173,8 +173,8 @@ export function create(studio, { view }) {
 
   /** Time, yarn and tension of a program, below the file. @param {Partial<ExportRequest>} request of the file */
   async function explain(request) {
-    const { chart, outline, regions, material, finish, gauge, linear_density_tex } = request;
-    const body = { chart, outline, regions, material, finish, gauge, linear_density_tex };
+    const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex } = request;
+    const body = { chart, outline, regions, material, machine, finish, gauge, linear_density_tex };
     const report = await attempt(status, () => api.run("program-report", /** @type {ProgramReportRequest} */ (body)));
     if (report) outcome.children[0]?.after(reportTable(report));
   }

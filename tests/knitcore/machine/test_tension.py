@@ -117,6 +117,19 @@ def test_a_shift_is_staged_where_that_spares_the_yarn() -> None:
     assert safe.to_dict()["tightest"]["verdict"] == safe.tightest.verdict
 
 
+def test_a_single_bed_is_left_to_the_hand() -> None:
+    with pytest.raises(InputError, match="no second bed"):
+        plan_safely(cable(1), WOOL, profile("brother"))
+
+
+def test_a_profile_may_give_the_gap_and_the_take_down() -> None:
+    guessed = loop_tension(pulled(3), WOOL, KNITERATE)
+    narrow = replace(KNITERATE, bed_gap_mm=2.0)
+    assert loop_tension(pulled(3), WOOL, narrow).needed_mm < guessed.needed_mm
+    heavy = replace(KNITERATE, take_down_n=1.0)
+    assert loop_tension(pulled(0), WOOL, heavy).tension_n == pytest.approx(0.5, rel=0.3)
+
+
 def test_a_program_names_the_line_of_its_tightest_loop() -> None:
     knits = [f"knit + f{n} 1" for n in range(1, 12)]
     moves = ["xfer f5 b5", "xfer f6 b6", "rack 2", "xfer b5 f7", "rack 0", "xfer b6 f6"]
