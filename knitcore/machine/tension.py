@@ -83,6 +83,8 @@ BREAK_CHANCE = 0.1
 """A chance of breaking that counts as a break: a program repeats its tightest pull many times."""
 BREAK_RISK = 0.02
 """A chance of breaking that calls for less racking in more passes, or for a slow carriage."""
+MOST_SPARE_NEEDLES = 3
+"""Columns that neighbours may be pulled apart for a while, where their yarn stands it."""
 _STEPS = 50
 
 
@@ -195,9 +197,11 @@ class LoopTension:
 
     def __str__(self) -> str:
         low, high = self.tension_interval_n
+        needles = "1 needle" if self.needles == 1 else f"{self.needles:g} needles"
+        chance = f", breaks with a chance of {self.break_chance:.0%}" * (self.break_chance >= 0.005)
         return (
-            f"{self.verdict}: {self.needles:g} needles apart{' across the gap' * self.across}, "
-            f"{self.tension_n:.2g} N ({low:.2g} to {high:.2g})"
+            f"{self.verdict}, {needles} apart{' across the gap' * self.across}, "
+            f"{self.tension_n:.2g} N ({low:.2g} to {high:.2g}){chance}"
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -416,7 +420,7 @@ class SafePlan:
 
 
 def plan_safely(moves: Sequence[LoopMove], yarn: LoopYarn, machine: MachineProfile) -> SafePlan:
-    """Plan transfers that the yarn stands: in the fewest passes, or in more with less racking.
+    """Plan transfers that the yarn stands, in the fewest passes that do not strain it.
 
     Raises
     ------
@@ -430,30 +434,49 @@ def plan_safely(moves: Sequence[LoopMove], yarn: LoopYarn, machine: MachineProfi
             f"{machine.name} has no second bed to transfer to.",
             "Move the loops by hand with a transfer tool, or choose a machine with two beds.",
         )
-    plans: list[SafePlan] = []
-    for most_rack in range(int(machine.racking.most_needles), -1, -1):
-        try:
-            plan = plan_transfers(moves, most_rack=most_rack)
-        except InputError:
-            if not plans:
-                raise
-            break
-        tightest = plan_tension(plan, yarn, machine)
-        note = f"Staged by rackings of up to {most_rack} to spare the yarn." if plans else ""
-        plans.append(SafePlan(plan, tightest, note))
-        if tightest is None or tightest.break_chance < BREAK_RISK:
-            return plans[-1]
+    plans = sorted(
+        (SafePlan(plan, plan_tension(plan, yarn, machine)) for plan in _plans(moves, machine)),
+        key=lambda of: (len(of.plan.passes), of.plan.most_rack),
+    )
+    fewest = len(plans[0].plan.passes)
+    for safe in plans:
+        if safe.tightest is None or safe.tightest.break_chance < BREAK_RISK:
+            passes = len(safe.plan.passes)
+            staged = f"Staged in {passes} passes instead of {fewest} to spare the yarn."
+            return replace(safe, note=staged if passes > fewest else "")
     best = min(plans, key=lambda of: of.tightest.break_chance if of.tightest else 0.0)
     if best.tightest is not None and best.tightest.verdict is Verdict.BREAKS:
         enough = _loop_that_stands(best.plan, yarn, machine)
         raise InputError(
             "transfers",
-            f"the tightest loop {best.tightest}; the yarn breaks at about "
+            f"tightest loop: {best.tightest}; the yarn holds about "
             f"{LOOP_EFFICIENCY * yarn.breaking_force_n:.2g} N in a loop.",
             f"Knit the row before with loops of {enough:.1f} mm instead of "
             f"{yarn.loop_length_mm:.1f} mm, or shift fewer stitches at once.",
         )
     return replace(best, note="Slow this transfer down and watch it: the yarn may break.")
+
+
+def _plans(moves: Sequence[LoopMove], machine: MachineProfile) -> list[TransferPlan]:
+    """Plans with more and less yarn to spare between neighbours, and with more and less racking.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    plans: list[TransferPlan] = []
+    for spare_needles in range(MOST_SPARE_NEEDLES * machine.needles_per_column, 0, -1):
+        for most_rack in range(int(machine.racking.most_needles), -1, -1):
+            try:
+                plans.append(
+                    plan_transfers(moves, most_rack=most_rack, spare_needles=spare_needles)
+                )
+            except InputError:
+                if not plans:
+                    raise
+                break
+    return plans
 
 
 def _loop_that_stands(plan: TransferPlan, yarn: LoopYarn, machine: MachineProfile) -> float:

@@ -145,13 +145,12 @@ def _lines(result: ProgramReportResult) -> list[str]:
     if result.cost is not None:
         lines.append(f"cost     {result.cost:.2f}")
     for kind in result.kinds_of_transfer:
-        of = kind.tightest
         tightest = "no loop is pulled"
-        if of is not None:
+        if (of := kind.tightest) is not None:
             low, high = of.tension_interval_n
             tightest = (
-                f"tightest loop {of.verdict}, {of.needles:g} needles apart, {of.tension_n:.2g} N "
-                f"({low:.2g} to {high:.2g}), breaks with a chance of {of.break_chance:.0%}"
+                f"tightest loop {of.verdict}: {of.tension_n:.2g} N ({low:.2g} to {high:.2g}) over "
+                f"{of.needles:g} needles, breaks with a chance of {of.break_chance:.0%}"
             )
         lines.append(f"rack {kind.rack:g}: {kind.passes} passes from line {kind.line}, {tightest}")
     return lines

@@ -107,14 +107,17 @@ def test_more_yarn_in_the_stitch_lets_a_cable_pass() -> None:
     assert plan_safely(cable(4), longer, wide).tightest is not None
 
 
-def test_a_shift_is_staged_where_that_spares_the_yarn() -> None:
-    wide = replace(KNITERATE, racking=replace(KNITERATE.racking, most_needles=6))
-    moves = [LoopMove(Needle("f", n), Needle("f", n + 6 * (n > 1))) for n in range(4)]
-    yarn = replace(WOOL, loop_length_mm=27)
-    safe = plan_safely(moves, yarn, wide)
-    assert safe.tightest is not None
-    assert safe.tightest.verdict is not Verdict.BREAKS
-    assert safe.to_dict()["tightest"]["verdict"] == safe.tightest.verdict
+def test_passes_are_saved_where_the_yarn_stands_it_and_staged_where_not() -> None:
+    """Both edges move inwards: three passes pull their neighbours three needles apart, four one."""
+    shifts = [1, 1, 1] + [0] * 4 + [-1, -1, -1]
+    moves = [LoopMove(Needle("f", n), Needle("f", n + shift)) for n, shift in enumerate(shifts)]
+    loose = plan_safely(moves, WOOL, KNITERATE)
+    short = plan_safely(moves, replace(WOOL, loop_length_mm=7.5), KNITERATE)
+    assert len(loose.plan.passes) == 3
+    assert not loose.note
+    assert len(short.plan.passes) == 4
+    assert "instead of 3" in short.note
+    assert short.to_dict()["tightest"]["break_chance"] < BREAK_RISK
 
 
 def test_a_single_bed_is_left_to_the_hand() -> None:
