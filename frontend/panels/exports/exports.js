@@ -59,7 +59,7 @@ export function create(studio, { view }) {
       "waste",
       (value) => (chosen.finish = value),
     ),
-    tex: labelled("Yarn, tex (g/km)", tex, "for its mass in the key"),
+    tex: labelled("Yarn, tex (g/km)", tex, "for its mass"),
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });

@@ -19,7 +19,7 @@ export function reportRows(report) {
     ["Time", `${Math.max(1, Math.round(report.minutes))} min without stops${cost}`],
     ["Passes", `${report.passes}: ${report.knit_passes} knit, ${report.transfer_passes} transfer${empty}`],
     ...report.yarns.map(({ carrier, length_m, mass_g }) =>
-      pair(`Carrier ${carrier}`, `${figure(length_m)} m, about ${figure(mass_g)} g`),
+      pair(`Carrier ${carrier}`, `${figure(length_m)} m, about ${figure(mass_g, 2)} g`),
     ),
     ...report.kinds_of_transfer
       .slice(0, MOST_KINDS)

@@ -40,7 +40,7 @@ test("a program's table gives time, yarn by carrier and the tightest loops", () 
   const rows = Object.fromEntries(reportRows(REPORT));
   assert.match(rows.Time, /^3 min without stops$/);
   assert.match(rows.Passes, /^27: 15 knit, 10 transfer, 2 to bring/);
-  assert.equal(rows["Carrier 1"], "12.3 m, about 5.60 g");
+  assert.equal(rows["Carrier 1"], "12.3 m, about 5.6 g");
   assert.match(rows["Transfers racked by 2"], /^1 pass, tightest loop tight, 0\.42 N \(0\.13 to 3\.0\), breaks/);
   assert.match(rows["Transfers straight across"], /^9 passes, tightest loop at rest$/);
 });
