@@ -162,6 +162,13 @@ def _check_machine(piece: Piece, machine: MachineProfile) -> None:
             f"{machine.name} is worked by hand: it reads no program.",
             f"Export written rows or a chart for it, or a program for {', '.join(others)}.",
         )
+    park = machine.carriers
+    if not park.hooks and park.parking == "right":
+        raise InputError(
+            "carriers.parking",
+            "without a hook, programs bring yarn in from the left only.",
+            "Say left, or let hooks be true.",
+        )
     columns, rows = piece.chart.columns, piece.chart.rows
     if columns > machine.columns:
         parts = -(-columns // machine.columns)

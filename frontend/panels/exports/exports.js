@@ -18,6 +18,7 @@ import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
+import { machineField } from "./machines.js";
 import { reportTable } from "./programreport.js";
 import { textButton } from "../../widgets/buttons.js";
 import { attempt } from "../../widgets/problem.js";
@@ -32,6 +33,7 @@ const PHOTO_PX = { width: 1400, height: 800 };
 export function create(studio, { view }) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
+  const machine = machineField(studio);
   const tex = numberField({ min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
   const sides = choice(
     "export-side",
@@ -59,6 +61,7 @@ export function create(studio, { view }) {
       "waste",
       (value) => (chosen.finish = value),
     ),
+    machine: machine.element,
     tex: labelled("Yarn, tex (g/km)", tex, "for its mass"),
     note,
   };
@@ -128,6 +131,7 @@ export function create(studio, { view }) {
     const added = ofExtensions(offered.extensions).map(entry);
     entries.push(...added);
     formats.append(...fieldsets(added));
+    machine.offer((await attempt(status, api.machines, askOffered))?.machines ?? []);
     showHindrances();
   }
 
@@ -243,6 +247,7 @@ export function create(studio, { view }) {
     ]
       .filter(Boolean)
       .join(" ");
+    machine.show();
     choose(kind);
     element.showModal();
     if (!offered) void askOffered();

@@ -131,8 +131,9 @@ def verified(
         raise KnitoutMismatchError("the virtual machine knitted another chart.")
     if warned:
         raise KnitoutMismatchError(f"the virtual machine warned: {warned[0]}")
-    if problems := check_program(made.text, machine or profile(DEFAULT)):
-        raise KnitoutMismatchError(f"the machine's profile does not allow it: {problems[0]}")
+    for problem in check_program(made.text, machine or profile(DEFAULT)):
+        if problem.stops:
+            raise KnitoutMismatchError(f"the machine's profile does not allow it: {problem}")
     return made
 
 

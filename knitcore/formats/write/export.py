@@ -212,12 +212,12 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     program = verified(
         piece, finish=options.finish, machine=machine, stitch_number=options.stitch_number
     )
+    given = options.stitch_number is not None
+    start = "" if given else "; it is a start: knit a swatch, and change it"
     notes = [
-        f"Made for {machine.name}, with stitch number {program.stitch_number:g}.",
+        f"Made for {machine.name}, with stitch number {program.stitch_number:g}{start}.",
         "Knitted on a virtual V-bed machine: the face is this chart.",
     ]
-    if options.stitch_number is None:
-        notes.append(f"The stitch number is a start ({machine.source('stitch_number')}).")
     if not piece.is_rectangle:
         notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
     if program.carriers > 1:

@@ -252,13 +252,22 @@ SINGLE_BED = replace(profile(DEFAULT), name="A single bed", beds=1)
             "outline: .* rack a bed by 1 needles",
         ),
         (
+            replace(
+                profile("kniterate"),
+                carriers=replace(profile("kniterate").carriers, parking="right"),
+            ),
+            DESIGNS["plain"],
+            Finish.WASTE,
+            r"carriers.parking: without a hook",
+        ),
+        (
             profile("v-bed-half-gauge"),
             Piece.of(StitchChart.of_fabric("rib", rows=2, columns=201)),
             Finish.WASTE,
             "chart: 201 columns are wider than the machine's 400 needles at half gauge",
         ),
     ],
-    ids=["hand", "purl", "bind-off", "racking", "width"],
+    ids=["hand", "purl", "bind-off", "racking", "parking", "width"],
 )
 def test_what_a_machine_cannot_knit_is_refused_with_a_remedy(
     machine: MachineProfile, piece: Piece, finish: Finish, says: str
