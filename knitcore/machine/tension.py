@@ -198,10 +198,10 @@ class LoopTension:
     def __str__(self) -> str:
         low, high = self.tension_interval_n
         needles = "1 needle" if self.needles == 1 else f"{self.needles:g} needles"
-        chance = f", breaks with a chance of {self.break_chance:.0%}" * (self.break_chance >= 0.005)
+        chance = f", breaks with a chance of {self.break_chance:.0%}" * (self.break_chance >= 0.01)
         return (
             f"{self.verdict}, {needles} apart{' across the gap' * self.across}, "
-            f"{self.tension_n:.2g} N ({low:.2g} to {high:.2g}){chance}"
+            f"{_shown(self.tension_n)} N ({_shown(low)} to {_shown(high)}){chance}"
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -217,6 +217,10 @@ class LoopTension:
             "break_chance": self.break_chance,
             "verdict": str(self.verdict),
         }
+
+
+def _shown(value: float) -> str:
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def loop_tension(pull: PulledLink, yarn: LoopYarn, machine: MachineProfile) -> LoopTension:

@@ -147,9 +147,9 @@ def _lines(result: ProgramReportResult) -> list[str]:
     for kind in result.kinds_of_transfer:
         tightest = "no loop is pulled"
         if (of := kind.tightest) is not None:
-            low, high = of.tension_interval_n
+            low, high = (float(f"{end:.2g}") for end in of.tension_interval_n)
             tightest = (
-                f"tightest loop {of.verdict}: {of.tension_n:.2g} N ({low:.2g} to {high:.2g}) over "
+                f"tightest loop {of.verdict}: {of.tension_n:.2g} N ({low:g} to {high:g}) over "
                 f"{of.needles:g} needles, breaks with a chance of {of.break_chance:.0%}"
             )
         lines.append(f"rack {kind.rack:g}: {kind.passes} passes from line {kind.line}, {tightest}")
