@@ -128,6 +128,9 @@ export const api = {
   /** @type {() => Promise<VersionResult>} */
   version: () => call("/version"),
 
+  /** @type {() => Promise<import("./types.js").Machines>} */
+  machines: () => call("/machines"),
+
   /** @type {() => Promise<Extensions>} */
   extensions: () => call("/extensions"),
 

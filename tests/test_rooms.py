@@ -21,6 +21,7 @@ FLOORS = (
     {"garment"},
     {"cloth"},
     {"draw", "fit"},
+    {"machine"},
     {"design", "formats", "notebook", "compile_share", "warm_up"},
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""

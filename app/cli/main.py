@@ -73,7 +73,13 @@ SECTIONS: dict[str, dict[str, Entry]] = {
     },
     "Files": {
         "import": ("files.imports", "Read the chart in FILE."),
+        "machines": ("files.machines", "List knitting machines, explain one, or check a program."),
         "export": ("files.export", "Write CHART for machines, knitters or other programs."),
+        "program": (
+            "machine.program_report",
+            "Report passes, tightest loop, minutes and yarn of a program.",
+        ),
+        "dial": ("machine.dial", "Give a machine's stitch number for a loop length."),
     },
     "Serve": {
         "serve": (".serve:command", ""),

@@ -9,13 +9,14 @@
  * @typedef {DesignRepeat} RepeatItem
  * @typedef {DesignLayout["shelf"][number]} ShelfItem
  * @typedef {DesignRepeat["placements"][number]} PlacementItem
- * @typedef {{chart: string} & DesignLayout} Content what of a document the chart shows
+ * @typedef {{chart: string} & Omit<DesignLayout, "machine">} Content what of a document the chart shows
  */
 
 import { MAX_SIDE, isChartText } from "../grid/grid.js";
 
 export const FORMAT = "knitcore-design";
 export const MAX_ITEMS = 200;
+const MAX_MACHINE = 100_000;
 export const MAX_MOTIF = 20_000;
 
 /** A design that cannot be read: what is wrong, and what to do. */
@@ -51,6 +52,7 @@ export function readDesign(value) {
     name: text(value.name ?? "Untitled", "name", 200),
     material: text(value.material ?? "acrylic", "material", 80),
     note: typeof value.note === "string" ? value.note.slice(0, 20_000) : "",
+    machine: typeof value.machine === "string" ? value.machine.slice(0, MAX_MACHINE) : null,
     ...readContent(value),
   };
 }
@@ -213,5 +215,6 @@ export const plainDesign = (name, chart, material) => ({
   name,
   material,
   note: "",
+  machine: null,
   ...contentOf(chart),
 });

@@ -5,7 +5,7 @@
  * @import {GaugeInput} from "../types.js"
  * @import {Content, ShelfItem} from "./design.js"
  *
- * @typedef {{id: string, name: string, material: string, note?: string,
+ * @typedef {{id: string, name: string, material: string, note?: string, machine?: string | null,
  *   remote?: {id: string, revision: number} | null} & Content} Design
  */
 

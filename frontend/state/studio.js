@@ -43,13 +43,15 @@ export const isComplete = ({ fabrics }) => Object.keys(fabrics).length === 4;
 export const REST = -1;
 
 export class Studio {
-  /** @param {ChartDocument} document @param {{id: string, name: string, material: string, note?: string}} design */
+  /** @param {ChartDocument} document @param {{id: string, name: string, material: string, note?: string, machine?: string | null}} design */
   constructor(document, design) {
     const settings = loadSettings(SETTINGS);
     this.document = document;
     this.designId = design.id;
     this.name = new Signal(design.name);
     this.note = new Signal(design.note ?? "");
+    /** The machine that programs are for: its name, or the text of a profile; null for the usual one. */
+    this.machine = new Signal(/** @type {string | null} */ (design.machine ?? null));
 
     /** @type {Signal<string>} */
     this.materialId = new Signal(design.material);
@@ -115,6 +117,7 @@ export class Studio {
       name: this.name.value,
       material: this.materialId.value,
       note: this.note.value,
+      machine: this.machine.value,
       ...this.document.content,
     };
   }
@@ -130,6 +133,7 @@ export class Studio {
     this.designId = id;
     this.name.value = design.name;
     this.note.value = design.note;
+    this.machine.value = design.machine ?? null;
     this.selection.value = null;
     this.materialId.value = design.material;
     this.document.open(design, history);
@@ -145,6 +149,7 @@ export class Studio {
     const { content } = this.document;
     this.name.value = design.name;
     this.note.value = design.note;
+    this.machine.value = design.machine ?? null;
     this.materialId.value = design.material;
     const label = "Changes from elsewhere";
     /** @param {Partial<DesignDocument>} part */

@@ -61,7 +61,7 @@ export class Keeper {
     this.#parcel = this.#parcelOf(studio.designId, remote);
     const changed = () => this.#changed();
     studio.document.onSettle(changed);
-    for (const signal of [studio.name, studio.materialId, studio.note]) {
+    for (const signal of [studio.name, studio.materialId, studio.note, studio.machine]) {
       signal.listen(changed);
     }
     const leaving = () => {

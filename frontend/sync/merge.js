@@ -4,11 +4,11 @@
  *
  * @import {DesignDocument} from "../types.js"
  *
- * @typedef {"name" | "material" | "note" | "chart" | "outline" | "regions" | "repeats" | "shelf"} Part
+ * @typedef {"name" | "material" | "note" | "machine" | "chart" | "outline" | "regions" | "repeats" | "shelf"} Part
  * @typedef {{document: DesignDocument, conflicts: Part[]}} Merged in a conflict `document` has our side
  */
 
-const PLAIN = /** @type {const} */ (["name", "material", "note", "outline"]);
+const PLAIN = /** @type {const} */ (["name", "material", "note", "machine", "outline"]);
 const LISTS = /** @type {const} */ (["regions", "repeats", "shelf"]);
 
 /**
@@ -27,7 +27,7 @@ export function merge(base, mine, theirs) {
     if (value === undefined) conflicts.push(part);
     else Object.assign(document, { [part]: value });
   };
-  for (const part of PLAIN) take(part, either(base[part], mine[part], theirs[part]));
+  for (const part of PLAIN) take(part, either(base[part] ?? null, mine[part] ?? null, theirs[part] ?? null));
   take("chart", mergeCharts(base.chart, mine.chart, theirs.chart));
   for (const part of LISTS) {
     /** @param {DesignDocument} side @returns {{id?: string, name: string}[]} */
@@ -40,7 +40,7 @@ export function merge(base, mine, theirs) {
 /** Whether two documents are the same. @param {DesignDocument} first @param {DesignDocument} second */
 export function same(first, second) {
   return (
-    [...PLAIN, /** @type {const} */ ("chart")].every((part) => first[part] === second[part]) &&
+    [...PLAIN, /** @type {const} */ ("chart")].every((part) => (first[part] ?? null) === (second[part] ?? null)) &&
     LISTS.every((part) => alike(first[part], second[part]))
   );
 }

@@ -132,6 +132,7 @@ def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:
     page = flat_studio
     assert exported(page, "knitout").suggested_filename.endswith(".k")
     expect(page.locator("#export-outcome")).to_contain_text("Knitted on a virtual V-bed machine")
+    expect(page.locator("#program-report")).to_contain_text("min without stops")
 
 
 def test_a_pattern_has_a_picture_where_nothing_is_drawn_in_3d(flat_studio: Page) -> None:

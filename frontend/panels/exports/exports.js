@@ -3,7 +3,7 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../state/studio.js"
- * @import {ExportRequest, ExportResult, Extensions} from "../../types.js"
+ * @import {ExportRequest, ExportResult, Extensions, ProgramReportRequest} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
  */
 
@@ -18,6 +18,8 @@ import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
+import { machineField } from "./machines.js";
+import { reportTable } from "./programreport.js";
 import { textButton } from "../../widgets/buttons.js";
 import { attempt } from "../../widgets/problem.js";
 
@@ -31,6 +33,7 @@ const PHOTO_PX = { width: 1400, height: 800 };
 export function create(studio, { view }) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
+  const machine = machineField(studio);
   const tex = numberField({ min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
   const sides = choice(
     "export-side",
@@ -58,7 +61,8 @@ export function create(studio, { view }) {
       "waste",
       (value) => (chosen.finish = value),
     ),
-    tex: labelled("Yarn, tex (g/km)", tex, "for its mass in the key"),
+    machine: machine.element,
+    tex: labelled("Yarn, tex (g/km)", tex, "for its mass"),
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });
@@ -127,6 +131,7 @@ export function create(studio, { view }) {
     const added = ofExtensions(offered.extensions).map(entry);
     entries.push(...added);
     formats.append(...fieldsets(added));
+    machine.offer((await attempt(status, api.machines, askOffered))?.machines ?? []);
     showHindrances();
   }
 
@@ -165,7 +170,17 @@ export function create(studio, { view }) {
     make.disabled = false;
     outcome.replaceChildren();
     const notes = bare ? ["without a picture: none could be made"] : [];
-    if (file) show({ ...file, notes: [...file.notes, ...notes] }, format);
+    if (!file) return;
+    show({ ...file, notes: [...file.notes, ...notes] }, format);
+    if (format.to === "knitout") await explain(/** @type {ExportRequest} */ (body));
+  }
+
+  /** Time, yarn and tension of a program, below the file. @param {Partial<ExportRequest>} request of the file */
+  async function explain(request) {
+    const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex } = request;
+    const body = { chart, outline, regions, material, machine, finish, gauge, linear_density_tex };
+    const report = await attempt(status, () => api.run("program-report", /** @type {ProgramReportRequest} */ (body)));
+    if (report) outcome.children[0]?.after(reportTable(report));
   }
 
   /** What the 3D view shows, or else what the service draws of it, base64; null where neither can be had. */
@@ -232,6 +247,7 @@ export function create(studio, { view }) {
     ]
       .filter(Boolean)
       .join(" ");
+    machine.show();
     choose(kind);
     element.showModal();
     if (!offered) void askOffered();

@@ -3,7 +3,7 @@
  *
  * @import {Extensions} from "../../types.js"
  *
- * @typedef {"worked" | "finish" | "note" | "tex"} Option
+ * @typedef {"worked" | "finish" | "machine" | "note" | "tex"} Option
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
@@ -64,7 +64,7 @@ export const KINDS = [
     ["knitspeak", "KnitSpeak", "for Stitch Maps and other tools; rectangular charts only", ["worked"], true],
   ]),
   ...kinds("For a machine", [
-    ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish"], true],
+    ["knitout", "Knitout", "for your machine; knitted on a virtual one first", ["machine", "finish", "tex"], true],
   ]),
   ...kinds("Data and files", [
     ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],

@@ -13,6 +13,7 @@ const WHOLE = {
   name: "Cuff",
   material: "acrylic",
   note: "warm",
+  machine: "kniterate",
   chart: "KPKP\nPKPK\nKKKK",
   outline: "xxx.\nxxxx\nxxxx",
   regions: [
@@ -65,9 +66,11 @@ const undoAll = (chart) => {
 test("a whole document is read, held and written the same", () => {
   const document = readDesign(WHOLE);
   assert.deepEqual(document, WHOLE);
-  const { format, version, name, material, note, ...content } = WHOLE;
+  const { format, version, name, material, note, machine, ...content } = WHOLE;
   assert.deepEqual(ChartDocument.read(document).content, content);
   assert.deepEqual([format, version, name, material, note], ["knitcore-design", 2, "Cuff", "acrylic", "warm"]);
+  assert.equal(machine, "kniterate");
+  assert.equal(readDesign({ ...WHOLE, machine: 3 }).machine, null);
 });
 
 test("what is wrong with a file is said in words", () => {

@@ -22,7 +22,6 @@ from knitcore.formats.write.chart_key import (
     multiple_words,
 )
 from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg, to_pdf
-from knitcore.formats.write.knitout import Finish
 from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
 from knitcore.formats.write.png import write_png
@@ -32,6 +31,8 @@ from knitcore.formats.write.written_pattern import write_rows
 from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
+from knitcore.machine.profile import machine_of
+from knitcore.machine.program import Finish
 from knitcore.materials import Material
 from knitcore.prediction.size import RelaxedSize
 
@@ -65,9 +66,10 @@ class ExportOptions:
     construction : flat or round, for charts and written rows.
     first_side : the side of row 1 in flat knitting.
     finish : how a knitout program ends.
+    stitch_number : of a knitout program; that of the machine's profile if none is given.
     name : of the design.
     note : printed on charts, and kept in the project file.
-    layout : outline, regions and their yarns, and what else the project file keeps.
+    layout : outline, regions and their yarns, the machine, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
     symbols : of knits and purls in printed charts.
     photo : a PNG picture of the cloth, for the first page of a pattern.
@@ -77,6 +79,7 @@ class ExportOptions:
     construction: Construction = Construction.FLAT
     first_side: Side = Side.RS
     finish: Finish = Finish.WASTE
+    stitch_number: float | None = None
     name: str = "Untitled"
     note: str = ""
     layout: DesignLayout = field(default_factory=DesignLayout)
@@ -205,13 +208,23 @@ def _of_extension(kind: str) -> Exporter:
 
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    program = verified(piece, finish=options.finish)
-    notes = ["Knitted on a virtual V-bed machine: the face is this chart."]
+    machine = machine_of(options.layout.machine)
+    program = verified(
+        piece, finish=options.finish, machine=machine, stitch_number=options.stitch_number
+    )
+    given = options.stitch_number is not None
+    start = "" if given else "; it is a start: knit a swatch, and change it"
+    notes = [
+        f"Made for {machine.name}, with stitch number {program.stitch_number:g}{start}.",
+        "Knitted on a virtual V-bed machine: the face is this chart.",
+    ]
     if not piece.is_rectangle:
         notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
     if program.carriers > 1:
         yarns = "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
         notes.append(f"Intarsia with {program.carriers} carriers: {yarns}.")
+    if program.draws_waste:
+        notes.append("All other carriers hold yarns: waste yarn takes the place of a draw thread.")
     figures = program.transfers, program.carriers
     return ExportedFile(
         ExportKind.KNITOUT, program.text.encode(), ".k", _TEXT, tuple(notes), *figures

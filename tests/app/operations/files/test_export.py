@@ -12,6 +12,7 @@ from fastapi.testclient import TestClient
 from PIL import Image
 
 from knitcore.formats.write.export import FORMATS, ExportKind
+from knitcore.machine.profile import profile
 from tests.app.command_line import printed, run
 from tests.app.rest import post, upload
 
@@ -81,6 +82,27 @@ def test_the_command_line_keeps_what_a_design_holds(tmp_path: Path) -> None:
     assert (kept["name"], kept["material"], kept["note"]) == ("Shaped", "cotton", "Mind the edge.")
     assert kept["outline"] == SHAPED["outline"]
     assert kept["regions"][0]["yarn"] == "navy"
+
+
+def test_a_program_is_for_the_machine_of_the_design_or_of_the_command(tmp_path: Path) -> None:
+    own = profile("v-bed-half-gauge").to_json()
+    out, file = tmp_path / "made.k", tmp_path / "mine.json"
+    file.write_text(own.replace('"generic"', '"Mine"'))
+    for machine, header in (("kniterate", "Kniterate"), (own, "generic")):
+        facts = run("export", saved(tmp_path, machine=machine), "--to", "knitout", "-o", out)
+        assert f";;Machine: {header}\n" in out.read_text()
+    assert "V-bed at half gauge" in facts["notes"][0]
+    design = saved(tmp_path, machine="kniterate")
+    run("export", design, "--to", "knitout", "--machine", file, "--stitch-number", "9", "-o", out)
+    assert ";;Machine: Mine\n" in out.read_text()
+    assert "\nx-stitch-number 9\n" in out.read_text()
+
+
+def test_a_machine_that_knits_from_no_program_is_refused(client: TestClient) -> None:
+    body = {"chart": CHART, "to": "knitout", "machine": "ayab"}
+    refusal = client.post("/api/v1/export", json=body)
+    assert refusal.status_code == 422
+    assert "worked by hand" in refusal.text
 
 
 def test_an_import_notes_doubtful_readings(tmp_path: Path) -> None:

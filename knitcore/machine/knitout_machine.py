@@ -18,7 +18,7 @@ from knitcore.base.errors import InputError
 
 MAGIC: Final = ";!knitout-"
 _HEADERS = {"machine", "gauge", "carriers", "position", "width"}
-_MACHINES = {"swg091n2", "swg061n2", "swgn2", "kniterate"}
+_MACHINES = {"swg091n2", "swg061n2", "swgn2", "kniterate", "generic"}
 _NEEDLE = re.compile(r"([fb]s?)(-?\d{1,6})")
 _COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
 _PROGRAM = re.compile(r"^[ \t]*(?:;!knitout|(?:knit|tuck)[ \t]+[+-][ \t]+[fb]s?-?\d)", re.MULTILINE)

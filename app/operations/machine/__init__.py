@@ -1,0 +1,1 @@
+"""Knitting machines: their programs and their settings."""

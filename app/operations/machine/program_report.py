@@ -1,0 +1,173 @@
+"""The figures of a program before it is knitted: passes, tightest loop, minutes, yarn, cost."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from knitcore.chart.stitch_chart import check_stitches
+from knitcore.formats.designs.layout import DesignLayout, piece_of
+from knitcore.garment.piece import Piece
+from knitcore.garment.regions import yarn_use
+from knitcore.machine.duration import CarrierYarn, ProgramReport, program_report
+from knitcore.machine.profile import machine_of
+from knitcore.machine.program import Finish, knitout_program
+from knitcore.machine.tension import LoopYarn, Verdict
+from knitcore.materials import Material
+
+from ...context import Context
+from ...requests.base import Ends, IntervalResult, ResultModel
+from ...requests.charts import ChartInput, MaterialName, to_chart
+from ...requests.fabrics import Gauged, LawsRequest
+from ..files.machines import machine_text
+from ..registry import Command, Operation
+
+MAX_STITCHES = 20_000
+
+Price = Annotated[float, Field(gt=0, le=1e6)]
+
+
+class ProgramReportRequest(DesignLayout, Gauged, LawsRequest):
+    """A chart, its yarn, and the machine that knits it."""
+
+    chart: ChartInput
+    material: MaterialName = Field("acrylic", description="Material of the yarn.")
+    finish: Finish = Field(Finish.WASTE, description="The end of the program.")
+    loop_length_mm: float | None = Field(
+        None, gt=0, le=100, description="Yarn of a stitch; the material's if left out."
+    )
+    linear_density_tex: float | None = Field(
+        None, gt=0, lt=1e5, description="Linear density of the yarn; guessed if left out."
+    )
+    price_per_kg: Price | None = Field(None, description="Price of the yarn, in any currency.")
+    price_per_hour: Price | None = Field(
+        None, description="Price of an hour of the machine, in the same currency."
+    )
+
+
+class LoopTensionResult(ResultModel):
+    """The yarn between two loops that needles pull apart."""
+
+    needles: float = Field(description="Between the two hooks.")
+    across: bool = Field(description="Whether they are on opposite beds.")
+    tension_n: float
+    tension_interval_n: Ends
+    needed_mm: float = Field(description="Yarn that the way needs.")
+    own_mm: float = Field(description="Yarn that the stitch has.")
+    break_chance: float = Field(description="Chance of breaking, with all that is uncertain.")
+    verdict: Verdict
+
+
+class KindOfTransferResult(ResultModel):
+    """Passes of transfers whose tightest loops are alike."""
+
+    rack: float = Field(description="Needles, to either side.")
+    passes: int
+    transfers: int
+    line: int = Field(description="The first of them in the program.")
+    tightest: LoopTensionResult | None
+
+
+class CarrierYarnResult(ResultModel, CarrierYarn):
+    """Yarn that a carrier lays."""
+
+
+class ProgramReportResult(IntervalResult):
+    """The figures of a program on a machine."""
+
+    machine: str
+    passes: int
+    knit_passes: int
+    transfer_passes: int
+    empty_passes: int = Field(description="Passes that only bring the carriage back.")
+    transfers: int
+    rackings: int
+    minutes: float = Field(description="Without stops.")
+    cost: float | None = Field(description="Of yarn and machine, if a price was given.")
+    yarns: list[CarrierYarnResult]
+    kinds_of_transfer: list[KindOfTransferResult] = Field(description="The tightest first.")
+    notes: list[str]
+
+
+def program(request: ProgramReportRequest, context: Context) -> ProgramReportResult:
+    """Passes, minutes, metres and grams of a chart's program, and the tension of its transfers.
+
+    Raises
+    ------
+    InputError
+        If the machine cannot knit the chart from a program.
+    """
+    report = _reported(request, context)
+    return ProgramReportResult.of(
+        report, interval_source=f"Tension: {report.tension_source}.", notes=[report.time_note]
+    )
+
+
+def _reported(request: ProgramReportRequest, context: Context) -> ProgramReport:
+    chart = to_chart(request.chart)
+    check_stitches(chart.stitches, MAX_STITCHES, instead=" for a program")
+    piece, material = piece_of(chart, request), context.material(request.material)
+    machine = machine_of(request.machine)
+    knitted = knitout_program(piece, finish=request.finish, machine=machine)
+    yarn = LoopYarn.of(
+        material,
+        loop_length_mm=request.loop_length_mm or _loop_length_mm(piece, material, request),
+        linear_density_tex=request.linear_density_tex,
+    )
+    return program_report(
+        knitted.text,
+        machine,
+        yarn,
+        price_per_kg=request.price_per_kg,
+        price_per_hour=request.price_per_hour,
+    )
+
+
+def _loop_length_mm(piece: Piece, material: Material, request: ProgramReportRequest) -> float:
+    """Mean yarn of the piece's stitches."""
+    use = yarn_use(piece.shaped, material, size=request.relaxed_size)
+    return 1000 * use.length_m / int(piece.shaped.stitch.sum())
+
+
+def _command(request: ProgramReportRequest, context: Context) -> ProgramReportResult:
+    if request.machine is not None:
+        request = request.model_copy(update={"machine": machine_text(request.machine)})
+    return program(request, context)
+
+
+def _lines(result: ProgramReportResult) -> list[str]:
+    passes = (
+        f"{result.passes} passes: {result.knit_passes} knit, {result.transfer_passes} transfer "
+        f"{result.transfers} loops, {result.empty_passes} bring the carriage back; "
+        f"{result.rackings} rackings"
+    )
+    lines = [f"machine  {result.machine}", f"time     {result.minutes:.0f} min", passes]
+    lines += [f"carrier {y.carrier}  {y.length_m:.1f} m, {y.mass_g:.1f} g" for y in result.yarns]
+    if result.cost is not None:
+        lines.append(f"cost     {result.cost:.2f}")
+    for kind in result.kinds_of_transfer:
+        tightest = "no loop is pulled"
+        if (of := kind.tightest) is not None:
+            low, high = (float(f"{end:.2g}") for end in of.tension_interval_n)
+            tightest = (
+                f"tightest loop {of.verdict}: {of.tension_n:.2g} N ({low:g} to {high:g}) over "
+                f"{of.needles:g} needles, breaks with a chance of {of.break_chance:.0%}"
+            )
+        lines.append(f"rack {kind.rack:g}: {kind.passes} passes from line {kind.line}, {tightest}")
+    return lines
+
+
+OPERATION = Operation(
+    program,
+    tag="files",
+    path="/program-report",
+    summary="Passes, tightest loop, minutes and yarn of a machine's program",
+    most_stitches=MAX_STITCHES,
+    example={"chart": {"fabric": "garter", "columns": 6, "rows": 4}, "material": "lace-acrylic"},
+    heavy=True,
+    command=Command(
+        _lines,
+        run=_command,
+        more="--machine takes a name of `knitcore machines`, or the file of a profile of your own.",
+        names={"linear_density_tex": "--tex", "regions": None, "repeats": None, "shelf": None},
+    ),
+)

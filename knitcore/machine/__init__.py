@@ -1,0 +1,1 @@
+"""Knitting machines: their profiles, and programs and plans for them."""

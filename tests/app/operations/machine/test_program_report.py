@@ -1,0 +1,33 @@
+"""The figures of a program over REST and on the command line."""
+
+from fastapi.testclient import TestClient
+
+from tests.app.command_line import printed
+from tests.app.rest import post
+
+SEED = {"chart": {"fabric": "seed", "columns": 8, "rows": 6}}
+
+
+def test_a_report_gives_passes_yarn_and_the_tightest_loop(client: TestClient) -> None:
+    request = SEED | {"machine": "kniterate", "loop_length_mm": 11, "linear_density_tex": 250}
+    report = post(client, "program-report", request | {"price_per_kg": 40})
+    assert report["transfer_passes"] == 11
+    assert report["transfers"] == 44
+    assert report["passes"] == sum(report[f"{k}_passes"] for k in ("knit", "transfer", "empty"))
+    assert report["cost"] > 0
+    (kind,) = report["kinds_of_transfer"]
+    assert kind["tightest"]["verdict"] == "free"
+    low, high = kind["tightest"]["tension_interval_n"]
+    assert low < kind["tightest"]["tension_n"] < high
+
+
+def test_a_machine_that_is_not_known_is_refused_with_those_that_are(client: TestClient) -> None:
+    reply = client.post("/api/v1/program-report", json=SEED | {"machine": "loom"})
+    assert reply.status_code == 422
+    assert "kniterate" in reply.text
+
+
+def test_the_command_prints_a_line_for_each_kind_of_transfer() -> None:
+    text = printed("program", "seed", "--size", "8x6", "--machine", "kniterate").stdout
+    assert "rack 0: 11 passes" in text
+    assert "min" in text
