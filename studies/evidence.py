@@ -48,7 +48,6 @@ from studies.yarn_per_stitch import (
     IN_USE,
     KNITDB,
     feed,
-    gap,
     of_yarns,
     weighed,
 )
@@ -366,8 +365,8 @@ def yarn_in_stitches(folder: Path, claims: list[Claim]) -> str:
     """Masses of swatches knitted by others, by their knits and purls."""
     plain, others = weighed(folder)
     every = plain.with_more(others)
-    judged = every.judged().missed
-    names = (ALIKE, FEED, FABRICS, IN_USE)
+    choice = every.judged()
+    names = (ALIKE, FEED, FABRICS)
     missed = {name: f"{np.exp(rms(every.missed(CANDIDATES[name]))):.3f}" for name in names}
     (constant, sd), *_ = every.constants(CANDIDATES[IN_USE])
     apart = [
@@ -378,34 +377,22 @@ def yarn_in_stitches(folder: Path, claims: list[Claim]) -> str:
     _, (between, between_sd) = every.constants(CANDIDATES[BETWEEN])
     loop, yarns = every.loop_length_mm, of_yarns()
     claims.append(Claim(
-        "yarn in a mixed chart", f"masses of {len(judged)} swatches", Basis.NESTED,
-        f"× {np.exp(rms(judged)):.3f}",
+        "yarn in a mixed chart", f"masses of {len(every.mass_g)} swatches", Basis.NESTED,
+        f"× {np.exp(rms(choice.missed)):.3f}",
         f"same in every stitch × {missed[ALIKE]}, fabrics × {missed[FABRICS]}", "", "rely on it",
     ))  # fmt: skip
     return f"""\
 ## Yarn in a stitch
 
-{len(plain.mass_g)} swatches of knits and purls and {len(others.mass_g)} of lace, cables and twists,
-knitted from one yarn at one setting (KnitDB), with their frames: their masses by knits and purls
-(`python -m studies.yarn_per_stitch FOLDER`). Swatches with the same knits and purls are left out
-together; {len(CANDIDATES)} forms are to choose from.
-
-{
-        table(
-            "| rms factor of the mass | |",
-            [
-                ["chosen without the texture that is judged", f"{np.exp(rms(judged)):.3f}"],
-                *([name, value] for name, value in reversed(missed.items())),
-            ],
-        )
-    }
-
-A change between knit and purl along the row takes {constant:.3f} ± {sd:.3f} of a stitch's yarn
-({apart[0]} and {apart[1]} in the two sets), one between rows {between:.3f} ± {between_sd:.3f}. Beds
-as far apart as needles would make it {feed(loop):.3f}; it is as if they were
-{gap(constant * loop):.1f} mm apart. With that constant, rib and seed of the paper's yarns are
-missed by × {np.exp(rms(yarns[KNITDB])):.2f}, without by × {np.exp(rms(yarns[ALIKE])):.2f}. *Not
-shown*: other machines at one setting.
+Masses of {len(plain.mass_g)} swatches of knits and purls and {len(others.mass_g)} of lace, cables
+and twists, of one yarn at one setting (KnitDB), frames included
+(`python -m studies.yarn_per_stitch FOLDER`). Of {len(CANDIDATES)} forms, the others choose
+*{IN_USE}* for {choice.chosen.count(list(CANDIDATES).index(IN_USE))} of {len(choice.chosen)}
+textures: a change between knit and purl takes {constant:.3f} ± {sd:.3f} of a stitch's yarn ({apart[0]} and
+{apart[1]} in the two sets), one between rows {between:.3f} ± {between_sd:.3f}. Beds as far apart as
+needles would make it {feed(loop):.3f} (masses × {missed[FEED]}). Rib and seed of the paper's yarns
+are then missed by × {np.exp(rms(yarns[KNITDB])):.2f}, without it by
+× {np.exp(rms(yarns[ALIKE])):.2f}. *Not shown*: other machines at one setting.
 """
 
 
