@@ -317,7 +317,7 @@ def _sides(purl: Mask) -> Mask:
 
 
 def _texture(purl: Mask) -> str:
-    return (purl ^ purl[0, 0]).tobytes().hex()
+    return bytes((purl ^ purl[0, 0]).tobytes()).hex()
 
 
 if __name__ == "__main__":

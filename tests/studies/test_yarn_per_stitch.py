@@ -81,9 +81,10 @@ def test_the_packaged_constant_is_that_of_the_swatches() -> None:
     every, rule = plain.with_more(others), change_rule()
     (constant, sd), *_ = every.constants(CANDIDATES[IN_USE])
     assert (constant, sd) == pytest.approx((rule.per_change, rule.per_change_sd), abs=0.005)
-    for one, other in ((plain, others), (others, plain)):  # constants from swatches of another kind
+    for swatches, other in ((plain, others), (others, plain)):  # constants of another kind
         missed, null = (
-            one.missed(CANDIDATES[name], other.fitted(CANDIDATES[name])) for name in (IN_USE, ALIKE)
+            swatches.missed(CANDIDATES[name], other.fitted(CANDIDATES[name]))
+            for name in (IN_USE, ALIKE)
         )
         assert rms(missed) < rms(null)
     assert rms(every.judged().missed) < rms(every.missed(CANDIDATES[ALIKE]))
