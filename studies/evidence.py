@@ -389,10 +389,10 @@ and twists, of one yarn at one setting (KnitDB), frames included
 (`python -m studies.yarn_per_stitch FOLDER`). Of {len(CANDIDATES)} forms, the others choose
 *{IN_USE}* for {choice.chosen.count(list(CANDIDATES).index(IN_USE))} of {len(choice.chosen)}
 textures: a change between knit and purl takes {constant:.3f} ± {sd:.3f} of a stitch's yarn
-({apart[0]} and {apart[1]} in the two sets), one between rows {between:.3f} ± {between_sd:.3f}. Beds as far apart as
-needles would make it {feed(loop):.3f} (masses × {missed[FEED]}). Rib and seed of the paper's yarns
-are then missed by × {np.exp(rms(yarns[KNITDB])):.2f}, without it by
-× {np.exp(rms(yarns[ALIKE])):.2f}. *Not shown*: other machines at one setting.
+({apart[0]} and {apart[1]} in the two sets), one between rows {between:.3f} ± {between_sd:.3f}.
+Beds as far apart as needles would make it {feed(loop):.3f} (masses × {missed[FEED]}).
+Rib and seed of the paper's yarns are then missed by × {np.exp(rms(yarns[KNITDB])):.2f}, without
+it by × {np.exp(rms(yarns[ALIKE])):.2f}. *Not shown*: other machines at one setting.
 """
 
 
