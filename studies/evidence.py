@@ -4,7 +4,8 @@
 
 FOLDER holds the paper's public data (``uniaxial``, ``dic``, ``bending``, ``compression``), force
 bands of graded jersey from another paper (``graded``, see ``studies/graded_jersey.py``), and
-swatches knitted by others (``knitdb``, see ``studies/knitdb.py``). Takes ten minutes.
+swatches knitted by others (``knitdb`` and ``knitdb_stitches``, see ``studies/knitdb.py`` and
+``studies/yarn_per_stitch.py``). Takes ten minutes.
 """
 
 import math
@@ -35,9 +36,21 @@ from studies.against_knitted import errors, rms
 from studies.claims import Basis, Claim
 from studies.figures import evidence as figures
 from studies.graded_jersey import BOTH, LAWS, LENGTHS_MM, POISSON, STRAINS, band, graded
-from studies.knitdb import ALL_ALIKE, NO_FOLDS, compared, factor, ranks, yarn_used
+from studies.knitdb import ALL_ALIKE, NO_FOLDS, compared, factor, ranks
 from studies.true_to_tests import Summary, left_out, of_library, strips
 from studies.without_tester import OTHERS, OWN, missed
+from studies.yarn_per_stitch import (
+    ALIKE,
+    BETWEEN,
+    CANDIDATES,
+    FABRICS,
+    FEED,
+    IN_USE,
+    KNITDB,
+    feed,
+    of_yarns,
+    weighed,
+)
 
 ROOT = Path(__file__).resolve().parent.parent
 DENSITY_G_PER_M = 0.5
@@ -318,12 +331,6 @@ def relaxed_sizes(folder: Path, claims: list[Claim]) -> str:
         f"as stockinette × {np.exp(rms(null)):.3f}, mixture × {np.exp(rms(mixture)):.3f}",
         f"{inside.mean():.0%}", "count a swatch",
     ))  # fmt: skip
-    used = yarn_used(folder, material("lace-acrylic"))
-    claims.append(Claim(
-        "yarn in a mixed chart", f"masses of {used.missed.size} swatches", Basis.NOTHING_CHOSEN,
-        f"× {np.exp(rms(used.missed)):.3f}", f"same in every stitch × {np.exp(rms(used.null)):.3f}",
-        "", "rely on it",
-    ))  # fmt: skip
     return f"""\
 ## Relaxed sizes
 
@@ -350,9 +357,42 @@ Rank correlation: {ranks(swatches.predicted, swatches.true)}. Of {inside.size} s
 {len(swatches.candidates) - 2} rules of folds ([mixed charts](mixed-charts.md)). An earlier rule, in
 which uneven ribs folded as deep as even ones, missed 29 other swatches of this yarn by 1.13, where
 *{ALL_ALIKE}* missed by 1.10 and *{NO_FOLDS}* by 1.08; the present rule was not judged on them.
-The yarn in each swatch, from the loop lengths of `lace-acrylic`'s pure fabrics and the chart with
-its frame, is held against its mass.
 *Not shown*: other yarns, and the absolute size of a stitch, which is the gauge.
+"""
+
+
+def yarn_in_stitches(folder: Path, claims: list[Claim]) -> str:
+    """Masses of swatches knitted by others, by their knits and purls."""
+    plain, others = weighed(folder)
+    every = plain.with_more(others)
+    choice = every.judged()
+    names = (ALIKE, FEED, FABRICS)
+    missed = {name: f"{np.exp(rms(every.missed(CANDIDATES[name]))):.3f}" for name in names}
+    (constant, sd), *_ = every.constants(CANDIDATES[IN_USE])
+    apart = [
+        f"{value:.2f} ± {error:.2f}"
+        for swatches in (plain, others)
+        for value, error in swatches.constants(CANDIDATES[IN_USE])
+    ]
+    _, (between, between_sd) = every.constants(CANDIDATES[BETWEEN])
+    loop, yarns = every.loop_length_mm, of_yarns()
+    claims.append(Claim(
+        "yarn in a mixed chart", f"masses of {len(every.mass_g)} swatches", Basis.NESTED,
+        f"× {np.exp(rms(choice.missed)):.3f}",
+        f"same in every stitch × {missed[ALIKE]}, fabrics × {missed[FABRICS]}", "", "rely on it",
+    ))  # fmt: skip
+    return f"""\
+## Yarn in a stitch
+
+Masses of {len(plain.mass_g)} swatches of knits and purls and {len(others.mass_g)} of lace, cables
+and twists, of one yarn at one setting (KnitDB), frames included
+(`python -m studies.yarn_per_stitch FOLDER`). Of {len(CANDIDATES)} forms, the others choose
+*{IN_USE}* for {choice.chosen.count(list(CANDIDATES).index(IN_USE))} of {len(choice.chosen)}
+textures: a change between knit and purl takes {constant:.3f} ± {sd:.3f} of a stitch's yarn
+({apart[0]} and {apart[1]} in the two sets), one between rows {between:.3f} ± {between_sd:.3f}.
+Beds as far apart as needles would make it {feed(loop):.3f} (masses × {missed[FEED]}).
+Rib and seed of the paper's yarns are then missed by × {np.exp(rms(yarns[KNITDB])):.2f}, without
+it by × {np.exp(rms(yarns[ALIKE])):.2f}. *Not shown*: other machines at one setting.
 """
 
 
@@ -597,6 +637,7 @@ def main() -> None:
         shear(folder / "graded", claims),
         gradings(folder / "graded", claims),
         relaxed_sizes(folder / "knitdb", claims),
+        yarn_in_stitches(folder, claims),
         mixed_charts(claims),
         yarn_models(claims),
         without_tester(claims),

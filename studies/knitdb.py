@@ -27,10 +27,8 @@ from scipy.stats import spearmanr
 from knitcore import StitchChart, material, predict
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import PHASES
-from knitcore.chart.phases import quarter_phases
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Z_SCORE
-from knitcore.materials.material import loop_lengths_mm
 from knitcore.prediction.densities import Densities, densities
 from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.mixture import Mixture
@@ -64,8 +62,6 @@ def main() -> None:
     for index, times in Counter(judged.chosen).most_common():
         print(f"  chosen {times:2} times: {list(swatches.candidates)[index]}")
     print(f"rank  {ranks(swatches.predicted, swatches.true)}")
-    yarn = yarn_used(arguments.folder, material(arguments.material))
-    print("yarn against mass: rms", *(f"{np.exp(np.sqrt(np.mean(logs**2))):.3f}" for logs in yarn))
     print(f"cover {swatches.inside.mean():.2f} of {swatches.inside.size} in the 90 % intervals")
 
 
@@ -127,35 +123,6 @@ def compared(folder: Path, of: Material) -> Compared:
     )
 
 
-class Yarn(NamedTuple):
-    """Logarithms of a swatch's yarn over stockinette's, less those of its mass, (swatches,) each.
-
-    Attributes
-    ----------
-    missed : by the loop lengths of a material's pure fabrics, weighted by their quarter stitches.
-    null : by the same loop length in every stitch.
-    """
-
-    missed: Array
-    null: Array
-
-
-def yarn_used(folder: Path, of: Material) -> Yarn:
-    """Yarn in the swatches that were weighed, frames included, against their masses."""
-    rows = [row for row in _measured(folder) if row["mass_g"]]
-    first = next(i for i, row in enumerate(rows) if row["name"].endswith("Stockinette"))
-    wholes = [_chart(folder / "charts" / f"{row['name']}.whole.txt") for row in rows]
-    lengths = [
-        float(loop_lengths_mm(quarter_phases(whole, periodic=True), of).sum()) for whole in wholes
-    ]
-    stitches = [whole.purl.size for whole in wholes]
-    masses = [float(row["mass_g"]) for row in rows]
-    logs = np.log(np.array([lengths, stitches], dtype=float)) - np.log(masses)
-    over = logs - logs[:, first : first + 1]
-    others = np.arange(len(rows)) != first
-    return Yarn(*over[:, others])
-
-
 def _texture(name: str, made_of: Densities) -> str:
     fabric = int(made_of.shares.argmax())
     return PHASES[fabric] if made_of.shares[fabric] > _ONE_FABRIC else name
@@ -180,7 +147,7 @@ def _candidates(made_of: list[Densities], of: Material) -> Iterator[tuple[str, A
 
 def read(folder: Path) -> tuple[list[str], np.ndarray, list[StitchChart]]:
     """Names, (swatches, 2) relaxed sizes in mm, and charts."""
-    rows = _measured(folder)
+    rows = measured_swatches(folder)
     names = [row["name"] for row in rows]
     sizes = np.array(
         [[float(row[f"relaxed_{side}_mm"]) for side in ("width", "height")] for row in rows]
@@ -188,9 +155,15 @@ def read(folder: Path) -> tuple[list[str], np.ndarray, list[StitchChart]]:
     return names, sizes, [_chart(folder / "charts" / f"{name}.txt") for name in names]
 
 
-def _measured(folder: Path) -> list[dict[str, str]]:
+def measured_swatches(folder: Path) -> list[dict[str, str]]:
+    """Rows of ``measured.csv``, with their columns' names."""
     with (folder / "measured.csv").open(encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
+
+
+def whole_chart(folder: Path, name: str) -> StitchChart:
+    """The chart of a swatch with its frame."""
+    return _chart(folder / "charts" / f"{name}.whole.txt")
 
 
 def _chart(file: Path) -> StitchChart:

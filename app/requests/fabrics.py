@@ -70,6 +70,9 @@ Count = Annotated[
 ]
 
 
+YarnPerStitch = Annotated[float | None, Field(gt=0, le=1000)]
+
+
 class GaugeInput(RequestModel):
     """The gauge of a chart: counted on your own relaxed cloth, or from a relaxation."""
 

@@ -19,6 +19,7 @@ from knitcore.chart.stitch_chart import (
     size_in_words,
 )
 from knitcore.materials import Material
+from knitcore.materials.yarn_per_stitch import yarn_per_stitch
 from knitcore.yarn.library.yarns import ChartYarn, yarn_for, yarn_friction
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
@@ -32,6 +33,8 @@ from .base import Ends, Positive, RequestModel, ResultModel
 from .charts import MaterialName, RepeatInput, to_chart, to_repeat
 from .faults import with_others
 
+_SAME_LENGTH = 1e-9
+"""Part of a loop length by which rows may differ and still count as equal."""
 LoopLengths = list[Annotated[list[Positive], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]]
 
 
@@ -66,8 +69,8 @@ class StitchRequest(RequestModel):
         return _yarn(context.material(self.material), repeat, self.loop_length_mm)
 
 
-class YarnLevelRequest(StitchRequest):
-    """A repeat, its yarn, and the model to use."""
+class RowLengthsRequest(StitchRequest):
+    """A repeat and its yarn, of which rows may have different lengths."""
 
     loop_lengths_mm: LoopLengths | None = Field(
         None,
@@ -77,14 +80,12 @@ class YarnLevelRequest(StitchRequest):
         "the bottom row first, of one length for all its stitches or one for each.",
         examples=[[[14.0], [12.0]]],
     )
-    flat: bool = Field(
+    yarn_per_stitch: bool = Field(
         False,
-        description="Hold the stitches in one plane, as a fabric laid flat; not in the published "
-        "branch.",
+        description="Give each row the yarn that it takes at one setting of the machine, which is "
+        "more where it changes between knit and purl; the mean stitch keeps its loop length. "
+        "Without this option all rows have the same.",
     )
-    branch: Branch | None = None
-    convention: Convention = Convention.PUBLISHED
-    fresh: bool = Field(False, description="Compute again, even if the result is stored.")
 
     def repeat(self, most: int | None = None) -> StitchChart:
         """The chart's repeat, or the whole chart if its rows have loop lengths of their own."""
@@ -99,17 +100,45 @@ class YarnLevelRequest(StitchRequest):
             If lengths are given twice.
         """
         lengths, given = self.loop_lengths_mm, self.loop_length_mm
-        if lengths is not None and given is not None:
+        if lengths is not None and (given is not None or self.yarn_per_stitch):
+            other = "yarn_per_stitch" if given is None else "loop_length_mm"
             raise InputError(
-                "loop_lengths_mm", "loop_length_mm is given as well.", "Give one of the two."
+                "loop_lengths_mm", f"{other} is given as well.", "Give one of the two."
             )
         if lengths is not None:
             given = float(np.mean([np.mean(row) for row in lengths]))
         return _yarn(context.material(self.material), repeat, given)
 
+    def with_row_lengths(self, context: Context) -> Self:
+        """The request with the loop length of each row, where it asks for them and they differ."""
+        if not self.yarn_per_stitch:
+            return self
+        repeat = to_chart(self.chart).repeat()
+        mean = self.yarn(repeat, context).loop_length_mm
+        rows = yarn_per_stitch(repeat, context.material(self.material), periodic=True).rows_mm
+        if np.ptp(rows) <= _SAME_LENGTH * mean:
+            return self.model_copy(update={"yarn_per_stitch": False})
+        lengths = [[length] for length in (mean * rows / rows.mean()).tolist()]
+        update = {"yarn_per_stitch": False, "chart": repeat.text, "loop_length_mm": None}
+        return self.model_copy(update=update | {"loop_lengths_mm": lengths})
+
+
+class YarnLevelRequest(RowLengthsRequest):
+    """A repeat, its yarn, and the model to use."""
+
+    flat: bool = Field(
+        False,
+        description="Hold the stitches in one plane, as a fabric laid flat; not in the published "
+        "branch.",
+    )
+    branch: Branch | None = None
+    convention: Convention = Convention.PUBLISHED
+    fresh: bool = Field(False, description="Compute again, even if the result is stored.")
+
     def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
         """Everything that decides a result, from which its stored name is made."""
-        options = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
+        left_out = {"fresh", "chart", "material", "yarn_per_stitch"}  # lengths say it
+        options = self.model_dump(mode="json", exclude=left_out)
         return {"repeat": repeat.text, "used": asdict(used), "asked": options}
 
 
@@ -130,7 +159,7 @@ class YarnResult(ResultModel, YarnModel):
         return cls.of(used.yarn, provenance=used.provenance, estimated=used.estimated)
 
 
-def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
+def lengths_of(request: RowLengthsRequest, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
     """One loop length, one for every course, or one for every stitch."""
     table = request.loop_lengths_mm
     if table is None:
@@ -150,7 +179,7 @@ def relax_requested(
     repeat: StitchChart, used: ChartYarn, request: YarnLevelRequest, context: Context
 ) -> RelaxedCell:
     """Relax in the requested branch, at held sizes of a stitch if they are given."""
-    lengths = _lengths(request, used, repeat.rows, repeat.columns)
+    lengths = lengths_of(request, used, repeat.rows, repeat.columns)
     return request.pass_to(relax, repeat, used.yarn, lengths, cancelled=context.cancelled)
 
 
@@ -165,6 +194,7 @@ def kept_or_made(
     make: Callable[[Request, StitchChart, ChartYarn, Context], Kept],
 ) -> Kept:
     """The stored or new result of a request; it says which."""
+    request = request.with_row_lengths(context)
     repeat = request.repeat()
     used = request.yarn(repeat, context)
     result, known = context.kept.get_or_make(

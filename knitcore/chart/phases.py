@@ -77,6 +77,17 @@ def quarter_phases(
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 
 
+def stitch_quarters(
+    chart: StitchChart, *, periodic: bool = False, stitch: Mask | None = None
+) -> Codes:
+    """Phases of the four quarters of every stitch, (rows, columns, 4), as in
+    :func:`quarter_phases`.
+    """
+    phases = quarter_phases(chart, periodic=periodic, stitch=stitch)
+    by_stitch = phases.reshape(chart.rows, 2, chart.columns, 2).transpose(0, 2, 1, 3)
+    return by_stitch.reshape(chart.rows, chart.columns, 4)
+
+
 def as_stitches(stitch: ArrayLike, chart: StitchChart) -> Mask:
     """Take a table that says where a shaped piece has stitches, as an array.
 

@@ -10,6 +10,7 @@ from enum import Enum
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.materials import Material
+from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from knitcore.prediction.pure import SIZE_LOG_SD
 from knitcore.prediction.size import RelaxedSize
 
@@ -117,11 +118,13 @@ class GaugeSet:
     material : its identifier.
     length_factor : loop lengths over the material's own: the square root of the ratio of stitch
         areas.
+    measured_yarn : yarn in a stitch of the swatch, if known, instead of the factor.
     """
 
     gauges: Mapping[Fabric, Gauge]
     material: str
     length_factor: float = 1.0
+    measured_yarn: MeasuredYarn | None = None
 
     @classmethod
     def of_material(

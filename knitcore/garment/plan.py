@@ -69,10 +69,10 @@ class GarmentPlan(Result):
         self, region: Region, material: Material, linear_density_tex: float | None = None
     ) -> YarnUse:
         """The size and yarn of one region."""
-        use = yarn_use(
-            self.shaped, material, linear_density_tex=linear_density_tex, cells=region.cells
-        )
-        return _scaled(use, self.gauges.length_factor)
+        return yarn_use(
+            self.shaped, material, linear_density_tex=linear_density_tex, cells=region.cells,
+            measured=self.gauges.measured_yarn, length_factor=self.gauges.length_factor,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +125,12 @@ def make_plan(
         cautions=(*_too_tight(worn), *cautions),
         misfits=misfits(regions, sizes, stitch),
         numbers=region_numbers(shaped, regions, material),
-        yarn=_scaled(
-            yarn_use(shaped, material, linear_density_tex=linear_density_tex), gauges.length_factor
+        yarn=yarn_use(
+            shaped,
+            material,
+            linear_density_tex=linear_density_tex,
+            measured=gauges.measured_yarn,
+            length_factor=gauges.length_factor,
         ),
     )
 
@@ -134,7 +138,3 @@ def make_plan(
 def _too_tight(worn: tuple[Worn, ...]) -> tuple[str, ...]:
     """A warning that names the parts that press too hard."""
     return too_tight_parts([(place.part, place.highest_mmhg) for place in worn])
-
-
-def _scaled(use: YarnUse, factor: float) -> YarnUse:
-    return YarnUse(use.length_m * factor, None if use.mass_g is None else use.mass_g * factor)

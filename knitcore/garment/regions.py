@@ -9,13 +9,12 @@ import numpy as np
 from knitcore.base.arrays import Mask
 from knitcore.base.bounds import check_positive
 from knitcore.base.errors import InputError
-from knitcore.chart.phases import quarter_phases
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.gauge import Gauge
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.law_uncertainty import log_interval
-from knitcore.materials.material import loop_lengths_mm
+from knitcore.materials.yarn_per_stitch import MeasuredYarn, yarn_per_stitch
 from knitcore.prediction.neighbourhood import counted_over_computed
 from knitcore.prediction.predict import predict
 from knitcore.prediction.size import RelaxedSize
@@ -163,10 +162,6 @@ def region_numbers(
     return tuple(numbers)
 
 
-LOOP_LENGTH_LOG_SD = 0.05
-"""Relative standard deviation of a loop length: the median of the 37 that the paper prints."""
-
-
 @dataclass(frozen=True)
 class YarnUse:
     """Yarn needed for a chart.
@@ -175,24 +170,29 @@ class YarnUse:
     ----------
     length_m : without cast-on, tails and swatch.
     mass_g : None without a linear density.
+    log_sd : standard deviation of the logarithm of both.
+    source : of the yarn in a stitch, in words.
     """
 
     length_m: float
     mass_g: float | None
+    log_sd: float
+    source: str
 
     def __str__(self) -> str:
+        low, high = self.length_interval_m
         mass = "" if self.mass_g is None else f", {self.mass_g:.3g} g"
-        return f"{self.length_m:.3g} m of yarn{mass}"
+        return f"{self.length_m:.3g} m ({low:.3g} to {high:.3g}) of yarn{mass}"
 
     @property
     def length_interval_m(self) -> Interval:
-        """90 % interval: loops vary in length."""
-        return log_interval(self.length_m, LOOP_LENGTH_LOG_SD)
+        """90 % interval."""
+        return log_interval(self.length_m, self.log_sd)
 
     @property
     def mass_interval_g(self) -> Interval | None:
         """90 % interval of the mass."""
-        return None if self.mass_g is None else log_interval(self.mass_g, LOOP_LENGTH_LOG_SD)
+        return None if self.mass_g is None else log_interval(self.mass_g, self.log_sd)
 
 
 def yarn_use(
@@ -202,29 +202,36 @@ def yarn_use(
     linear_density_tex: float | None = None,
     cells: Mask | None = None,
     size: RelaxedSize | None = None,
+    measured: MeasuredYarn | None = None,
+    length_factor: float = 1.0,
 ) -> YarnUse:
-    """Yarn of all stitches; each needs the mean loop length of its four quarters' fabrics.
+    """Yarn of all stitches, by :func:`~knitcore.materials.yarn_per_stitch.yarn_per_stitch`.
 
     Parameters
     ----------
     shaped : the chart.
-    material : with loop lengths.
+    material : with a loop length, unless yarn was measured.
     linear_density_tex : g per km of the yarn.
     cells : which stitches, such as those of one yarn; all inside the outline if left out.
     size : relaxed size of the mean stitch, if known: loops grow with the root of its area.
+    measured : yarn in a stitch, if known; the size and the factor then say nothing more.
+    length_factor : loop lengths over the material's, by the knitter's gauge.
 
     Raises
     ------
     InputError
-        If a fabric in the chart has no loop length, or the density is not positive.
+        If no loop length is known, or the density is not positive.
     """
     chart = shaped.continued()
-    phases = quarter_phases(chart).reshape(chart.rows, 2, chart.columns, 2)
+    used = yarn_per_stitch(chart, material, measured=measured, cells=cells, stitch=shaped.stitch)
+    if measured is None:
+        areas = counted_over_computed(chart, material, size, shaped.stitch).prod()
+        length_factor *= math.sqrt(areas)
+    else:
+        length_factor = 1.0
     counted = shaped.stitch if cells is None else shaped.stitch & cells
-    quarters = phases.transpose(0, 2, 1, 3).reshape(*shaped.stitch.shape, 4)[counted]
-    metres = float(loop_lengths_mm(quarters, material).sum()) / 1000
-    metres *= math.sqrt(counted_over_computed(chart, material, size, shaped.stitch).prod())
+    metres = length_factor * used.mean_mm * int(counted.sum()) / 1000
     if linear_density_tex is None:
-        return YarnUse(metres, None)
+        return YarnUse(metres, None, used.log_sd, used.source)
     check_positive("linear_density_tex", linear_density_tex, "tex", "a linear density", 1e5)
-    return YarnUse(metres, metres * linear_density_tex / 1000)
+    return YarnUse(metres, metres * linear_density_tex / 1000, used.log_sd, used.source)

@@ -7,13 +7,10 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
 from knitcore.base import showing
-from knitcore.base.arrays import Array, Codes
 from knitcore.base.choice import Choice
 from knitcore.base.errors import InputError
-from knitcore.chart.fabric import PHASES, Direction, Fabric
+from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.law_uncertainty import LawUncertainty
 from knitcore.materials.measured_curves import MeasuredCurve
@@ -218,26 +215,3 @@ class Material:
             )
         title = f"{self.name} ({self.identifier})"
         return showing.captioned(showing.html_table(head, rows), title, self.note)
-
-
-def loop_lengths_mm(quarters: Codes, material: Material) -> Array:
-    """Yarn of stitches, (...): the mean loop length of their quarters' fabrics.
-
-    Parameters
-    ----------
-    quarters : (..., 4) phases of the stitches' quarters.
-
-    Raises
-    ------
-    InputError
-        If one of these fabrics has no loop length.
-    """
-    lengths = np.zeros(len(PHASES))
-    for phase in np.unique(quarters):
-        length = material.record(PHASES[phase]).loop_length_mm
-        if length is None:
-            problem = f"{material.identifier} has no loop length for {PHASES[phase]}."
-            remedy = "Unravel ten stitches of a swatch, measure the yarn, and add loop_length_mm."
-            raise InputError("material", problem, remedy)
-        lengths[phase] = length
-    return np.asarray(lengths[quarters].mean(axis=-1))

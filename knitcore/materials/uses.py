@@ -78,12 +78,17 @@ def _under_load(material: Material) -> list[Suitability]:
 
 def _amount(material: Material) -> Suitability:
     name = "amount of yarn, and weight (with the tex of the ball band)"
+    serves, missing = _loops(material)
+    return Suitability(name, serves, missing)
+
+
+def _loops(material: Material) -> tuple[Serves, str]:
+    """Yarn in a stitch: one fabric's says roughly what the others have."""
     lacking = [f.value for f, r in material.fabrics.items() if r.loop_length_mm is None]
-    if lacking:
-        return Suitability(
-            name, Serves.NO, f"yarn in a stitch of {', '.join(lacking)}: unravel ten"
-        )
-    return Suitability(name, Serves.YES)
+    if not lacking:
+        return Serves.YES, ""
+    serves = Serves.NO if len(lacking) == len(material.fabrics) else Serves.ROUGHLY
+    return serves, f"yarn in a stitch of {', '.join(lacking)}: unravel ten"
 
 
 def _yarn_level(material: Material) -> Suitability:
@@ -92,8 +97,9 @@ def _yarn_level(material: Material) -> Suitability:
     missing = []
     if yarn.bending_modulus_n_mm2 is None:
         missing.append("the bending stiffness: photos of hanging yarn")
-    if any(record.loop_length_mm is None for record in material.fabrics.values()):
-        missing.append("yarn in a stitch: unravel ten")
+    loops, unravel = _loops(material)
+    if loops is Serves.NO:
+        missing.append(unravel)
     if missing:
         return Suitability(name, Serves.NO, "; ".join(missing))
     deviation = log_deviation(
@@ -103,7 +109,7 @@ def _yarn_level(material: Material) -> Suitability:
         return Suitability(name, Serves.ROUGHLY, "the bending stiffness: photos of hanging yarn")
     if yarn.compression_stiffness_n_per_mm3 is None:
         return Suitability(name, Serves.ROUGHLY, "a squeezing test of the yarn")
-    return Suitability(name, Serves.YES)
+    return Suitability(name, loops, unravel)
 
 
 def _errors(material: Material, fabric: Fabric) -> tuple[float, float]:

@@ -13,12 +13,13 @@ from knitcore.formats.designs.layout import DesignLayout
 from knitcore.formats.write.chart_key import Symbols
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.machine.program import Finish
+from knitcore.materials.yarn_per_stitch import MeasuredYarn
 
 from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import ResultModel
 from ...requests.charts import ChartInput, MaterialName, to_chart
-from ...requests.fabrics import Gauged, LawsRequest
+from ...requests.fabrics import Gauged, LawsRequest, YarnPerStitch
 from ...requests.uploads import Content
 from ..registry import Command, Operation
 from .machines import machine_text
@@ -59,6 +60,11 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
     note: str = Field("", max_length=20_000, description="Note to print with the chart.")
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn, for its mass."
+    )
+    yarn_per_stitch_mm: YarnPerStitch = Field(
+        None,
+        description="Yarn in the mean stitch of this chart, as knitted: unravelled, or weighed "
+        "(1,000,000 × g ÷ tex ÷ stitches); the material's by default.",
     )
     photo: Content | None = Field(
         None, description="PNG picture of the cloth, base64, for the first page of a pattern."
@@ -109,7 +115,11 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    options = request.pass_to(ExportOptions, layout=request, gauge=request.relaxed_size)
+    mm = request.yarn_per_stitch_mm
+    options = request.pass_to(
+        ExportOptions, layout=request, gauge=request.relaxed_size,
+        measured_yarn=None if mm is None else MeasuredYarn(mm),
+    )  # fmt: skip
     return export_chart(chart, request.to, context.material(request.material), options)
 
 

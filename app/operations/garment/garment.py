@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,28 +14,29 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import size_in_words
 from knitcore.formats.designs.design_file import DesignFile, write_design
 from knitcore.formats.designs.garment_design import design_of_plan
-from knitcore.garment.gauge import Gauge
+from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.worn_piece import Worn
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import log_interval
+from knitcore.materials.yarn_per_stitch import MeasuredYarn
 
 from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
 from ...requests.charts import CellLines, ChartLines, RepeatText
-from ...requests.fabrics import Extensibility, Moduli
+from ...requests.fabrics import Extensibility, Moduli, YarnPerStitch
 from ...requests.garments import LENGTHS, AnyTemplate, KnitterRequest
 from ...requests.sizes import SizeResult, SizeSteps, size_lines, sizes_of
 from ..registry import Command, Operation
 
 MATERIAL_ERRORS = (
     "Sizes: the material's gauge, with one aspect ratio of stitches for all yarns (8 %); "
-    "a gauge of your own makes them more certain. Yarn: the paper's ± on loop lengths (5 %)."
+    "a gauge of your own makes them more certain."
 )
 SWATCH_ERRORS = (
     "Sizes: a counted gauge (3 %), and for fabrics other than the swatch's the aspect ratio "
-    "of stitches (8 %). Yarn: the paper's ± on loop lengths (5 %)."
+    "of stitches (8 %)."
 )
 
 
@@ -45,10 +47,23 @@ class GarmentRequest(KnitterRequest):
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn (g/km), for its mass."
     )
+    yarn_per_stitch_mm: YarnPerStitch = Field(
+        None,
+        description="Yarn in a stitch of the swatch in the gauge's fabric, or in stockinette: "
+        "unravelled, or weighed (1,000,000 × g ÷ tex ÷ stitches); the material's by default.",
+    )
     intarsia: bool = Field(False, description="Knit each fabric with a yarn of its own.")
     sizes: SizeSteps | None = Field(
         None, description="Steps between sizes, for a table of them in the result and the design."
     )
+
+    def gauges(self, material: Material) -> GaugeSet:
+        """The gauges of the four fabrics, with the yarn in a stitch of the swatch."""
+        gauges = super().gauges(material)
+        if (mm := self.yarn_per_stitch_mm) is None:
+            return gauges
+        fabric = self.gauge.fabric if self.gauge else Fabric.STOCKINETTE
+        return replace(gauges, measured_yarn=MeasuredYarn(mm, fabric))
 
 
 class RegionResult(Moduli, Extensibility):
@@ -158,7 +173,8 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         yarn_g=plan.yarn.mass_g,
         yarn_interval_m=plan.yarn.length_interval_m,
         yarn_interval_g=plan.yarn.mass_interval_g,
-        interval_source=SWATCH_ERRORS if request.gauge else MATERIAL_ERRORS,
+        interval_source=f"{SWATCH_ERRORS if request.gauge else MATERIAL_ERRORS} Yarn: "
+        f"{plan.yarn.source}.",
         warnings=[*plan.cautions, *(misfit.text for misfit in plan.misfits)],
         sizes=sizes,
         design=request.pass_to(design_of_plan, plan, notes=tuple(size_lines(sizes))),

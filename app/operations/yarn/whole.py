@@ -12,14 +12,15 @@ from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.solve.splines import size_intervals
 from knitcore.yarn.study.whole_chart import MAX_ROUNDS, WholeShape, relax_whole
 
+from ...cli.options import loop_lengths
 from ...context import Context
 from ...requests.base import Ends, Floats, IntervalResult, ResultModel, listed
 from ...requests.charts import ChartInput, to_chart
-from ...requests.yarn_level import StitchRequest, YarnResult
+from ...requests.yarn_level import RowLengthsRequest, YarnResult, lengths_of
 from ..registry import Command, Operation
 
 
-class WholeRequest(StitchRequest):
+class WholeRequest(RowLengthsRequest):
     """A chart, its yarn, and when to stop."""
 
     chart: ChartInput  # as it stands, so that a fabric needs a size
@@ -96,15 +97,21 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
     A job that was stopped, or whose machine was, continues after the last round that ended.
     """
     chart = to_chart(request.chart)
+    request = request.with_row_lengths(context)
     used = request.yarn(chart, context)
+    asked = {"flat", "convention"}
+    if request.loop_lengths_mm is not None:
+        asked.add("loop_lengths_mm")
     inputs: dict[str, Any] = {
         "chart": chart.text,
         "used": asdict(used),
-        "asked": request.model_dump(mode="json", include={"flat", "convention"}),
+        "asked": request.model_dump(mode="json", include=asked),
     }
+    rows = len(request.loop_lengths_mm or [])  # of the chart, or of its repeat
+    lengths = lengths_of(request, used, rows or chart.rows, chart.columns)
     before = context.kept.stored(KeptSheet, inputs)
     relaxed = request.pass_to(
-        relax_whole, chart, used.yarn, used.loop_length_mm,
+        relax_whole, chart, used.yarn, lengths,
         resume=None if before is None else before.sheet(),
         kept=lambda sheet: context.kept.keep(inputs, KeptSheet.of(sheet)),
         progress=context.progress, cancelled=context.cancelled,
@@ -150,5 +157,7 @@ OPERATION = Operation(
         _lines,
         more="Its edges are free. It has up to 4,000 stitches, free of force and without friction. "
         "A stopped command continues where it left off.",
+        names={"loop_lengths_mm": None},
+        fields=loop_lengths,
     ),
 )

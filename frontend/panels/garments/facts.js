@@ -12,15 +12,15 @@ import { table, tableRow } from "../../widgets/table.js";
 
 /** @param {GarmentResult} garment @param {string} unit mm or in @returns {Node[]} */
 export function facts(garment, unit) {
-  const { columns, rows, stitches, yarn_m, yarn_g, gauges } = garment;
+  const { columns, rows, stitches, yarn_m, yarn_g, yarn_interval_m, yarn_interval_g, gauges } = garment;
   const gauge = gauges.find(({ fabric }) => fabric === "stockinette") ?? gauges[0];
-  const mass = yarn_g === null ? "" : `, ${figure(yarn_g)} g`;
+  const mass = yarn_g === null || !yarn_interval_g ? "" : `, ${figure(yarn_g)} g (${span(yarn_interval_g)})`;
   return [
     h(
       "p",
-      { class: "figures" },
+      { class: "figures", title: `90 % intervals: ${garment.interval_source}` },
       h("strong", {}, `${columns} sts × ${rows} rows`),
-      ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
+      ` · ${stitches} stitches · ${figure(yarn_m)} m (${span(yarn_interval_m)}) of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
     regions(garment, unit),
     remark(

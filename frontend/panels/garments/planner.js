@@ -113,6 +113,15 @@ export function create(studio, { keeper }) {
     "aria-label": "Yarn in tex",
     oninput: changed,
   });
+  const loop = numberField({
+    min: "1",
+    max: "1000",
+    step: "any",
+    placeholder: "–",
+    "aria-label": "Yarn in a stitch of the swatch, mm",
+    id: "planner-loop",
+    oninput: changed,
+  });
   const intarsia = h("input", { type: "checkbox", id: "planner-intarsia", onchange: changed });
   const own = h("input", {
     type: "checkbox",
@@ -214,6 +223,7 @@ export function create(studio, { keeper }) {
         h("h3", {}, "Yarn and gauge"),
         labelled("Yarn", yarn),
         labelled("Yarn, tex (g/km)", tex, "for its mass"),
+        labelled("Yarn in a stitch of a swatch, mm", loop, "unravel ten, for a surer amount"),
         h("label", { class: "planner-check line gap-8" }, own, "My own gauge"),
         gaugeRow,
         h("label", { class: "planner-check line gap-8" }, intarsia, "A colour for each fabric (intarsia)"),
@@ -409,6 +419,7 @@ export function create(studio, { keeper }) {
       ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value }
       : null,
     linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
+    yarn_per_stitch_mm: Number.isFinite(loop.valueAsNumber) ? loop.valueAsNumber : null,
     intarsia: intarsia.checked,
     sizes: inSizes.checked
       ? { wider_percent: wider.valueAsNumber || 0, longer_percent: longer.valueAsNumber || 0 }

@@ -24,7 +24,7 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.space.bending_constants import bends_of, mirrored_bending
 from knitcore.cloth.space.stitch_sheet import TWIST, Net, StitchSheet
 from knitcore.materials import Material
-from knitcore.materials.material import loop_lengths_mm
+from knitcore.materials.yarn_per_stitch import yarn_per_stitch
 from knitcore.prediction.predict import predict
 from knitcore.prediction.size import RelaxedSize
 from knitcore.yarn.library.yarns import yarn_for
@@ -249,9 +249,7 @@ def stitch_weights_n(
         If the yarn's weight is impossible, or the material lacks a loop length.
     """
     check_linear_density(linear_density_g_per_m)
-    quarters = quarter_phases(chart, periodic=periodic, stitch=stitches)
-    by_stitch = quarters.reshape(chart.rows, 2, chart.columns, 2).transpose(0, 2, 1, 3)
-    loops = loop_lengths_mm(by_stitch.reshape(chart.rows, chart.columns, 4), material)
+    loops = yarn_per_stitch(chart, material, periodic=periodic, stitch=stitches).stitch_mm
     weights = 1e-6 * STANDARD_GRAVITY_M_PER_S2 * linear_density_g_per_m * loops
     return np.asarray(weights if stitches is None else np.where(stitches, weights, 0.0))
 

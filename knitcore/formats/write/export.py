@@ -5,6 +5,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
+from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.base.extensions import Group, offered, running
 from knitcore.chart.row_sides import Construction, Side
@@ -30,10 +31,11 @@ from knitcore.formats.write.stitch_values import write_csv, write_vtu
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
-from knitcore.garment.regions import yarn_use
+from knitcore.garment.regions import YarnUse, yarn_use
 from knitcore.machine.profile import machine_of
 from knitcore.machine.program import Finish
 from knitcore.materials import Material
+from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from knitcore.prediction.size import RelaxedSize
 
 
@@ -74,6 +76,7 @@ class ExportOptions:
     symbols : of knits and purls in printed charts.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
+    measured_yarn : yarn in a stitch of this piece, if known.
     """
 
     construction: Construction = Construction.FLAT
@@ -86,6 +89,7 @@ class ExportOptions:
     linear_density_tex: float | None = None
     photo: bytes | None = None
     gauge: RelaxedSize | None = None
+    measured_yarn: MeasuredYarn | None = None
     symbols: Symbols = Symbols.DOTS
 
 
@@ -233,13 +237,15 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
 
 def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
     style = _style(piece, material, options)
-    return design_report(piece, material, options.name, style, options.layout.regions)
+    words = _yarn_words(piece, material, options)
+    return design_report(piece, material, options.name, style, options.layout.regions, words)
 
 
 def _pattern(piece: Piece, material: Material, options: ExportOptions) -> tuple[Page, ...]:
     style = _style(piece, material, options)
     facts = _yarn_facts(piece, material, options)
-    return pattern_pages(piece, material, style, facts, options.photo)
+    words = _yarn_words(piece, material, options)
+    return pattern_pages(piece, material, style, facts, options.photo, words)
 
 
 def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> str:
@@ -296,20 +302,31 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
     for index in range(len(piece.yarns)):
         cells = piece.cells(index)
         said = f"{int(cells.sum())} sts"
-        try:
-            use = yarn_use(
-                piece.shaped,
-                material,
-                linear_density_tex=options.linear_density_tex,
-                cells=cells,
-                size=piece.gauge,
-            )
-        except InputError:  # the material has no loop length, so only stitches are given
-            facts.append(said)
-            continue
-        mass = "" if use.mass_g is None else f", {use.mass_g:.1f} g"
-        facts.append(f"{said}, {use.length_m:.1f} m{mass}")
+        use = _yarn_use(piece, material, options, cells)
+        if use is not None:
+            mass = "" if use.mass_g is None else f", {use.mass_g:.1f} g"
+            said = f"{said}, {use.length_m:.1f} m{mass}"
+        facts.append(said)
     return tuple(facts)
+
+
+def _yarn_words(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:
+    """Say how much yarn the piece takes, if its loops are known."""
+    use = _yarn_use(piece, material, options)
+    return () if use is None else (f"In all {use}, by {use.source}.",)
+
+
+def _yarn_use(
+    piece: Piece, material: Material, options: ExportOptions, cells: Mask | None = None
+) -> YarnUse | None:
+    """Yarn of some stitches; None if neither the material nor the options have a loop length."""
+    try:
+        return yarn_use(
+            piece.shaped, material, linear_density_tex=options.linear_density_tex, cells=cells,
+            size=piece.gauge, measured=options.measured_yarn,
+        )  # fmt: skip
+    except InputError:
+        return None
 
 
 _TEXT = "text/plain; charset=utf-8"

@@ -105,6 +105,7 @@ def pattern_pages(
     style: ChartStyle,
     yarn_facts: Sequence[str] = (),
     photo: bytes | None = None,
+    yarn_notes: Sequence[str] = (),
 ) -> tuple[Page, ...]:
     """The pattern as A4 pages.
 
@@ -115,6 +116,7 @@ def pattern_pages(
     style : how it is worked, its title, note, regions and linked repeats.
     yarn_facts : of each yarn, such as its length.
     photo : a PNG picture of the cloth for the first page.
+    yarn_notes : sentences about all yarns.
 
     Raises
     ------
@@ -128,7 +130,7 @@ def pattern_pages(
     flow.text(f"{piece.shaped.stitches} stitches in {piece.chart.rows} rows; {facts.finished}.")
     if photo is not None:
         flow.photo(photo, "The cloth as it was computed, not a photograph.")
-    _materials(flow, piece, material, yarn_facts)
+    _materials(flow, piece, material, yarn_facts, yarn_notes)
     parts = _known_parts(facts, style.regions)
     _gauge(flow, facts, parts=bool(parts))
     if style.note:
@@ -308,7 +310,13 @@ def _without_empty_edges(image: Image.Image) -> Image.Image:
     )
 
 
-def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequence[str]) -> None:
+def _materials(
+    flow: _Flow,
+    piece: Piece,
+    material: Material,
+    yarn_facts: Sequence[str],
+    yarn_notes: Sequence[str],
+) -> None:
     flow.heading("Materials")
     yarn = material.yarn
     details = ", ".join(part for part in (yarn.product, yarn.fibre) if part)
@@ -317,7 +325,8 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
         facts = yarn_facts[index] if index < len(yarn_facts) else ""
         name = f"{yarn_name(index)}: {own.name}" if is_coloured(piece) else own.name
         flow.text(": ".join(filter(None, (name.capitalize(), facts))), colour=tinted(own.colour))
-    flow.text("Lengths are for the stitches alone: add tails, cast-on and a swatch.")
+    for note in (*yarn_notes, "Lengths are for the stitches alone: add tails, cast-on, a swatch."):
+        flow.text(note)
     flow.text("Needles of the size with which your swatch has the gauge below.")
 
 

@@ -57,10 +57,12 @@ def design_report(
     name: str,
     style: ChartStyle,
     regions: Sequence[DesignRegion] = (),
+    notes: Sequence[str] = (),
 ) -> bytes:
     """A PDF: mechanics, then the extensibility field if there are regions, then the chart.
 
-    A piece that is not a rectangle has no modulus of its own; those of its regions are given.
+    ``notes`` are added to the assumptions of the first page. A piece that is not a rectangle has no
+    modulus of its own; those of its regions are given.
 
     Raises
     ------
@@ -77,10 +79,11 @@ def design_report(
             *_maps(piece, material, style.aspect, 73.0),
         ]
         shapes += _plot(prediction)
-        pages += _with_assumptions(shapes, assumptions(prediction), 228.0)
+        pages += _with_assumptions(shapes, [*notes, *assumptions(prediction)], 228.0)
     if regions or not piece.is_rectangle:
         shapes = [*_regions(piece, material, name, style.aspect, regions, size)]
-        pages += _with_assumptions(shapes, LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
+        said = LOCAL_ASSUMPTIONS if pages else (*notes, *LOCAL_ASSUMPTIONS)
+        pages += _with_assumptions(shapes, said, A4_MM[1] - 30.0)
     return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
 
 

@@ -23,6 +23,7 @@ from knitcore.chart.phases import quarter_phases
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, material
+from knitcore.materials.yarn_per_stitch import loop_length
 from knitcore.yarn.model.paper_samples import Sample, load_samples
 from knitcore.yarn.model.yarn_model import YarnModel
 
@@ -51,7 +52,8 @@ def yarn_for(of: Material, chart: StitchChart, loop_length_mm: float | None = No
     Parameters
     ----------
     of, chart : the material and the repeat.
-    loop_length_mm : yarn per stitch where the material has no loop length of its own.
+    loop_length_mm : yarn per stitch of fabrics that have none in the material; by default it
+        follows from the others' (:func:`~knitcore.materials.yarn_per_stitch.loop_length`).
 
     Raises
     ------
@@ -112,11 +114,7 @@ def _estimate(
         )
     loop = record.loop_length_mm if record.loop_length_mm is not None else loop_length_mm
     if loop is None:
-        raise InputError(
-            "loop_length_mm",
-            f"{of.identifier} has no loop length for {fabric}.",
-            "Give the yarn per stitch (--loop-length-mm), or use a material that has one.",
-        )
+        loop = loop_length(of, fabric).mm
     bending = of.yarn.bending_modulus_n_mm2
     if bending is None:
         raise InputError(

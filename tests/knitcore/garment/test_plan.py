@@ -20,6 +20,7 @@ from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows
 from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import load_library
+from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from knitcore.mechanics.pressure import CAPILLARY_MMHG, too_tight
 from tests.knitcore.refusals import refuses
 
@@ -233,6 +234,10 @@ def test_yarn_of_a_pure_fabric_is_its_loop_length(fabric: Fabric) -> None:
     course, wale = WOOL.record(fabric).stitch_mm
     loose = yarn_use(shaped, WOOL, size=RelaxedSize(1.2 * course, 1.2 * wale))
     assert loose.length_m == pytest.approx(1.2 * use.length_m, rel=0.01)
+    known = yarn_use(shaped, WOOL, linear_density_tex=500, measured=MeasuredYarn(10.0))
+    assert (known.length_m, known.mass_g) == pytest.approx((2.0, 1.0))
+    assert known.log_sd < use.log_sd
+    assert known.length_interval_m.low < 2.0 < known.length_interval_m.high
     with pytest.raises(InputError, match="not a linear density"):
         yarn_use(shaped, WOOL, linear_density_tex=0)
 

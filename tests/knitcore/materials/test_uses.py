@@ -25,6 +25,14 @@ def test_two_tests_alone_do_not_serve_for_charts() -> None:
     assert sizes.serves is Serves.YES
 
 
+def test_one_loop_length_says_roughly_what_the_others_are() -> None:
+    acrylic = material("acrylic")
+    rib = replace(acrylic.record(Fabric.RIB), loop_length_mm=None)
+    *_, amount, level = uses_of(replace(acrylic, fabrics={**acrylic.fabrics, Fabric.RIB: rib}))
+    assert amount.serves is level.serves is Serves.ROUGHLY
+    assert "rib: unravel ten" in amount.missing
+
+
 def test_a_yarn_without_a_pull_serves_roughly() -> None:
     yarn = yarn_without_tester(KnownSwatch(Fabric.RIB, 20, 28)).material("mine")
     charts, *sizes, amount, level = uses_of(yarn)

@@ -67,6 +67,13 @@ def test_outlines_and_yarns_go_there_and_back(kind: ExportKind, client: TestClie
     post(client, "export", SHAPED | {k: imported[k] for k in SHAPED} | {"to": kind})
 
 
+def test_a_measured_yarn_is_counted_in_the_pattern(client: TestClient) -> None:
+    body = {"chart": "\n".join(["KPKPKP"] * 10), "to": "pattern-svg", "linear_density_tex": 500}
+    file = post(client, "export", body | {"yarn_per_stitch_mm": 20.0})
+    words = "In all 1.2 m (1.16 to 1.25) of yarn, 0.6 g, by the yarn measured in this cloth."
+    assert words in base64.b64decode(file["content"]).decode()
+
+
 def saved(folder: Path, **changes: object) -> Path:
     """The file of a design that is changed so."""
     design = folder / "shaped.json"

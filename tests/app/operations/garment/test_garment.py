@@ -4,6 +4,7 @@ import json
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
@@ -59,6 +60,12 @@ def test_gauge_yarn_and_pressure_of_ones_own(client: TestClient) -> None:
     assert low < 22
     assert high > 18
     assert plain["yarn_g"] == pytest.approx(plain["yarn_m"] / 2)
+    assert "Yarn: the loop lengths of acrylic." in plain["interval_source"]
+    swatch = client.post("/api/v1/garment", json=request | {"yarn_per_stitch_mm": 12.0}).json()
+    support = next(r for r in swatch["regions"] if r["name"] == "support")
+    assert support["yarn_m"] == pytest.approx(support["stitches"] * 12.0 / 1000, rel=0.02)
+    assert np.ptp(swatch["yarn_interval_m"]) < np.ptp(plain["yarn_interval_m"]) * 12.0 / 11.28
+    assert "measured in stockinette" in swatch["interval_source"]
     inches = request | {"gauge": {"stitches": 22, "rows": 30, "per": "4 in"}}
     fine = client.post("/api/v1/garment", json=inches).json()
     gauge = next(g for g in fine["gauges"] if g["fabric"] == "stockinette")

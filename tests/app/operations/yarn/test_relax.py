@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
+from app.context import Context
+from app.operations.yarn.relax import RelaxRequest
 from knitcore import StitchChart, relax
 from knitcore.yarn.model.paper_samples import sample
 from knitcore.yarn.solve.splines import RelaxedRepeat, size_intervals
 from tests.app.command_line import printed, refused, run
 from tests.app.rest import post
+from tests.knitcore.refusals import refuses
 
 FIELDS = {
     "cell_course_mm", "cell_wale_mm", "energy_n_mm", "bending_share", "contact_share",
@@ -94,6 +97,20 @@ def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: Te
     wide = post(client, "relax", {"chart": "K", "material": "cotton", "cell_course_mm": 3.5})
     assert wide["cell_course_mm"] == pytest.approx(3.5)
     assert wide["force_course_n"] > 0.0
+
+
+def test_rows_with_changes_take_more_yarn_if_that_is_chosen(tmp_path: Path) -> None:
+    context = Context(tmp_path)
+    request = RelaxRequest(chart="KP\nKK", material="cotton", yarn_per_stitch=True)
+    given = request.with_row_lengths(context)
+    (plain,), (changing,) = given.loop_lengths_mm or []
+    assert changing / plain == pytest.approx((17.94 + 17.32) / (12.28 + 16.05), rel=1e-6)
+    used = request.yarn(request.repeat(), context)
+    assert (plain + changing) / 2 == pytest.approx(used.loop_length_mm)
+    even = RelaxRequest(chart="KP", material="cotton", yarn_per_stitch=True)
+    assert even.with_row_lengths(context).loop_lengths_mm is None
+    with refuses("loop_lengths_mm", "yarn_per_stitch"):
+        given.model_copy(update={"yarn_per_stitch": True}).check_parts(context)
 
 
 def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_more_certain(

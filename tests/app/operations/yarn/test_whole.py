@@ -32,6 +32,13 @@ def test_a_stopped_job_goes_on_where_it_was(tmp_path: Path) -> None:
     assert relaxed.rows == relaxed.columns == 1
 
 
+def test_rows_of_a_whole_chart_may_differ_in_yarn(tmp_path: Path) -> None:
+    request = REQUEST.model_copy(update={"chart": "KP\nKK", "rounds": 2, "yarn_per_stitch": True})
+    by_rule = whole(request, Context(tmp_path))
+    alike = whole(request.model_copy(update={"yarn_per_stitch": False}), Context(tmp_path))
+    assert by_rule.energy_n_mm != pytest.approx(alike.energy_n_mm, rel=1e-3)
+
+
 @pytest.mark.slow
 def test_a_whole_chart_on_the_command_line(tmp_path: Path) -> None:
     chart = tmp_path / "chart.txt"

@@ -48,10 +48,12 @@ def test_a_loop_length_may_stand_in_for_a_missing_one():
     record = replace(lace.record(Fabric.STOCKINETTE), loop_length_mm=None)
     unknown = replace(lace, fabrics={**lace.fabrics, Fabric.STOCKINETTE: record})
     stitch = StitchChart.parse("K")
-    with refuses("loop_length_mm", "--loop-length-mm"):
-        yarn_for(unknown, stitch)
     known = yarn_for(lace, stitch)
     assert yarn_for(unknown, stitch, known.loop_length_mm) == known
+    alike = lace.record(Fabric.GARTER).loop_length_mm
+    assert yarn_for(unknown, stitch).loop_length_mm == pytest.approx(alike)
+    with refuses("material", "has no loop length"):
+        yarn_for(replace(lace, fabrics={Fabric.STOCKINETTE: record}), stitch)
 
 
 def test_every_yarn_of_the_library_has_an_interval_around_its_default():
