@@ -13,6 +13,7 @@ from knitcore.formats.designs.layout import DesignLayout
 from knitcore.formats.write.chart_key import Symbols
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.knitout import Finish
+from knitcore.machine.profile import profile
 
 from ...cli.options import out_option
 from ...context import Context
@@ -34,6 +35,10 @@ ExtensionName = Annotated[str, Field(pattern=f"^{IDENTIFIER.pattern}$")]
 """The identifier of a format that is not built in."""
 
 
+MachineName = Annotated[str, Field(max_length=40, examples=["brother-ribber"])]
+"""The identifier of a machine."""
+
+
 class ExportRequest(DesignLayout, Gauged, LawsRequest):
     """A chart and the format to write it in."""
 
@@ -50,6 +55,9 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
     symbols: Symbols = Field(
         Symbols.DOTS,
         description="Symbols of printed charts: a dot or a dash for a purl, or the Japanese ones.",
+    )
+    machine: MachineName | None = Field(
+        None, description="Machine on which it is knitted; the usual one of the format if left out."
     )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, description="Note to print with the chart.")
@@ -105,7 +113,12 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    options = request.pass_to(ExportOptions, layout=request, gauge=request.relaxed_size)
+    options = request.pass_to(
+        ExportOptions,
+        layout=request,
+        gauge=request.relaxed_size,
+        machine=None if request.machine is None else profile(request.machine),
+    )
     return export_chart(chart, request.to, context.material(request.material), options)
 
 

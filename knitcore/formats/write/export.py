@@ -25,13 +25,20 @@ from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg
 from knitcore.formats.write.knitout import Finish
 from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
-from knitcore.formats.write.png import write_png
+from knitcore.formats.write.png import write_grey, write_png
 from knitcore.formats.write.report import design_report
+from knitcore.formats.write.sheets.card_sheet import card_pages
+from knitcore.formats.write.sheets.plan_sheet import plan_pages
 from knitcore.formats.write.stitch_values import write_csv, write_vtu
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
+from knitcore.machine.home.ayab import ayab_picture
+from knitcore.machine.home.hand_plan import hand_plan
+from knitcore.machine.home.plan_rows import HandPlan
+from knitcore.machine.home.punch_card import punch_card
+from knitcore.machine.profile import MachineProfile, profile
 from knitcore.materials import Material
 from knitcore.prediction.size import RelaxedSize
 
@@ -44,6 +51,11 @@ class ExportKind(StrEnum):
     PNG = "png"
     SVG = "svg"
     PDF = "pdf"
+    HAND_PLAN = "hand-plan"
+    HAND_PLAN_TEXT = "hand-plan-text"
+    AYAB = "ayab"
+    PUNCH_CARD = "punch-card"
+    PUNCH_CARD_TEXT = "punch-card-text"
     PATTERN = "pattern"
     PATTERN_SVG = "pattern-svg"
     REPORT = "report"
@@ -70,6 +82,7 @@ class ExportOptions:
     layout : outline, regions and their yarns, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
     symbols : of knits and purls in printed charts.
+    machine : on which it is knitted; None leaves the usual one of the format.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
     """
@@ -84,6 +97,7 @@ class ExportOptions:
     photo: bytes | None = None
     gauge: RelaxedSize | None = None
     symbols: Symbols = Symbols.DOTS
+    machine: MachineProfile | None = None
 
 
 @dataclass(frozen=True)
@@ -218,6 +232,42 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     )
 
 
+def _hand_plan(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    plan, notes = _planned(piece, options)
+    content = to_pdf(plan_pages(plan, options.name), options.name)
+    return ExportedFile(ExportKind.HAND_PLAN, content, *_PDF, notes)
+
+
+def _hand_plan_text(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    plan, notes = _planned(piece, options)
+    text = f"{options.name}\n{plan.text}"
+    return ExportedFile(ExportKind.HAND_PLAN_TEXT, text.encode(), *_TXT, notes)
+
+
+def _planned(piece: Piece, options: ExportOptions) -> tuple[HandPlan, tuple[str, ...]]:
+    plan = hand_plan(piece, options.machine or profile("brother"))
+    if options.construction is Construction.ROUND:
+        return plan, (*plan.notes, "The plan is worked flat: join the sides.")
+    return plan, plan.notes
+
+
+def _ayab(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    picture = ayab_picture(piece, options.machine or profile("ayab"))
+    content = write_grey(picture.grey)
+    return ExportedFile(ExportKind.AYAB, content, ".png", "image/png", picture.notes)
+
+
+def _punch_card(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    card = punch_card(piece, options.machine or profile("brother"))
+    content = to_pdf(card_pages(card, options.name), options.name)
+    return ExportedFile(ExportKind.PUNCH_CARD, content, *_PDF, card.notes)
+
+
+def _punch_card_text(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    card = punch_card(piece, options.machine or profile("brother"))
+    return ExportedFile(ExportKind.PUNCH_CARD_TEXT, card.text.encode(), *_TXT, card.notes)
+
+
 def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
     style = _style(piece, material, options)
     return design_report(piece, material, options.name, style, options.layout.regions)
@@ -318,6 +368,11 @@ _BUILT_IN = (
     Exporter(ExportKind.PATTERN, *_PDF, lambda p, m, o: to_pdf(_pattern(p, m, o), o.name)),
     Exporter(ExportKind.PATTERN_SVG, *_SVG, lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name)),
     Exporter(ExportKind.REPORT, *_PDF, _report),
+    Exporter(ExportKind.HAND_PLAN, *_PDF, _hand_plan),
+    Exporter(ExportKind.HAND_PLAN_TEXT, *_TXT, _hand_plan_text),
+    Exporter(ExportKind.AYAB, ".png", "image/png", _ayab),
+    Exporter(ExportKind.PUNCH_CARD, *_PDF, _punch_card),
+    Exporter(ExportKind.PUNCH_CARD_TEXT, *_TXT, _punch_card_text),
     Exporter(
         ExportKind.TEXT,
         *_TXT,
