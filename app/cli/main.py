@@ -74,6 +74,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
     "Files": {
         "import": ("files.imports", "Read the chart in FILE."),
         "export": ("files.export", "Write CHART for machines, knitters or other programs."),
+        "knit-along": ("files.along", "Print CHART row by row, as it is knitted."),
     },
     "Serve": {
         "serve": (".serve:command", ""),
@@ -190,7 +191,7 @@ def _loaded(name: str, module: str, line: str) -> click.Command:
     from ..operations.registry import operations_in
     from .commands import command_of
 
-    (operation,) = (of for of in operations_in(module) if of.name == name)
+    (operation,) = (of for of in operations_in(module) if of.name == name.replace("-", "_"))
     return command_of(operation, name, line)
 
 

@@ -59,6 +59,9 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
     machine: MachineName | None = Field(
         None, description="Machine on which it is knitted; the usual one of the format if left out."
     )
+    from_row: int = Field(
+        1, ge=1, description="Row at which the plan of a home machine begins, after a break."
+    )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, description="Note to print with the chart.")
     linear_density_tex: float | None = Field(

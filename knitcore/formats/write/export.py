@@ -83,6 +83,7 @@ class ExportOptions:
     linear_density_tex : of the yarns, for their mass.
     symbols : of knits and purls in printed charts.
     machine : on which it is knitted; None leaves the usual one of the format.
+    from_row : at which a plan for a home machine begins, after a break or a jam.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
     """
@@ -98,6 +99,7 @@ class ExportOptions:
     gauge: RelaxedSize | None = None
     symbols: Symbols = Symbols.DOTS
     machine: MachineProfile | None = None
+    from_row: int = 1
 
 
 @dataclass(frozen=True)
@@ -245,10 +247,10 @@ def _hand_plan_text(piece: Piece, _: Material, options: ExportOptions) -> Export
 
 
 def _planned(piece: Piece, options: ExportOptions) -> tuple[HandPlan, tuple[str, ...]]:
-    plan = hand_plan(piece, options.machine or profile("brother"))
+    plan = hand_plan(piece, options.machine or profile("brother")).resumed(options.from_row)
     if options.construction is Construction.ROUND:
-        return plan, (*plan.notes, "The plan is worked flat: join the sides.")
-    return plan, plan.notes
+        return plan, (*plan.notes, plan.time, "The plan is worked flat: join the sides.")
+    return plan, (*plan.notes, plan.time)
 
 
 def _ayab(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:

@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from knitcore.base.arrays import Mask
+from knitcore.base.arrays import Mask, runs
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.machine.home.needle_places import (
@@ -32,7 +32,7 @@ from knitcore.machine.home.needle_places import (
     other_stitches,
     side_words,
 )
-from knitcore.machine.home.plan_rows import Act, HandPlan, HandRow, Task
+from knitcore.machine.home.plan_rows import Act, HandPlan, HandRow, Task, minutes_in_words
 from knitcore.machine.profile import MachineProfile
 
 LADDER_S, RUNG_S = 12.0, 3.0
@@ -43,7 +43,6 @@ EDGE_S = 8.0
 """Seconds to shape a stitch of an edge, or to lay a yarn."""
 MAX_LADDER = 30
 """Most rows that are dropped at once: longer ladders draw in (a stated guess)."""
-GUESSED = "Minutes are our guess for a practised knitter."
 
 
 def hand_plan(chart: StitchChart | Piece, profile: MachineProfile) -> HandPlan:
@@ -67,11 +66,6 @@ def hand_plan(chart: StitchChart | Piece, profile: MachineProfile) -> HandPlan:
     ribber = profile.beds > 1
     toward = facing(piece) if ribber else _sides(piece)
     return _Planner(piece, profile, toward, ribber=ribber).plan()
-
-
-def _minutes(minutes: float) -> str:
-    count = max(round(minutes), 1)
-    return "1 minute" if count == 1 else f"{count} minutes"
 
 
 def _sides(piece: Piece) -> Mask:
@@ -121,6 +115,7 @@ class _Planner:
 
     def plan(self) -> HandPlan:
         reforms = {} if self._ribber else self._reforms()
+        yarns = on_needles(self._piece.yarn_of, self._toward)
         rows = []
         for row in range(len(self._spans)):
             places = np.flatnonzero(self._stitch[row])
@@ -130,6 +125,7 @@ class _Planner:
                     self._leftwards(row),
                     int(places[0]),
                     tuple(self._other[row, places].tolist()),
+                    tuple((stop - start, yarn) for start, stop, yarn in runs(yarns[row, places])),
                     tuple(self._before(row)),
                     tuple(reforms.get(row, ())),
                 )
@@ -311,25 +307,11 @@ class _Planner:
         return (*move, "Bind off with the latch tool, loosely.")
 
     def _notes(self, plan: HandPlan) -> tuple[str, ...]:
-        side = side_words(self._toward)
-        spent = [
-            f"{name} {sum(task.seconds for task in plan.tasks if task.act is act) / 60:.0f}"
-            for act, name in _TIMED.items()
-            if any(task.act is act for task in plan.tasks)
-        ]
-        details = f" ({', '.join(spent)})" if spent else ""
-        notes = [side, f"Time: about {_minutes(plan.minutes)}{details}. {GUESSED}"]
+        notes = [side_words(self._toward)]
         if self._ribber:
             alone = _Planner(self._piece, self._profile, _sides(self._piece), ribber=False).plan()
             if alone.minutes < plan.minutes:
-                notes.append(f"Without the ribber it takes about {_minutes(alone.minutes)}.")
+                notes.append(
+                    f"Without the ribber it takes about {minutes_in_words(alone.minutes)}."
+                )
         return tuple(notes)
-
-
-_TIMED = {
-    Act.REFORM: "re-forming",
-    Act.TURN: "turning",
-    Act.TRANSFER: "transfers",
-    Act.SHAPE: "shaping",
-}
-"""Acts whose minutes a plan states."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 
-from knitcore.machine.home.needle_places import needle_name
+from knitcore.base.errors import InputError
+from knitcore.machine.home.needle_places import needle_name, needle_words
 
+GUESSED = "Minutes are our guess for a practised knitter."
 MAX_PERIOD = 8
 """Most blocks of rows that are repeated together."""
 
@@ -21,6 +23,15 @@ class Act(StrEnum):
     TRANSFER = "transfer"
     YARNS = "yarns"
     REFORM = "re-form"
+
+
+_TIMED = {
+    Act.REFORM: "re-forming",
+    Act.TURN: "turning",
+    Act.TRANSFER: "transfers",
+    Act.SHAPE: "shaping",
+}
+"""Acts whose minutes a plan states."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +64,7 @@ class HandRow:
     first : place of the first needle in work.
     other : for each needle in work from the left, whether its stitch is one to be re-formed, or on
         the ribber.
+    yarns : needles and number of the yarn of each stretch from the left.
     before, after : work by hand before and after the carriage passes.
     """
 
@@ -60,6 +72,7 @@ class HandRow:
     leftwards: bool
     first: int
     other: tuple[bool, ...]
+    yarns: tuple[tuple[int, int], ...]
     before: tuple[Task, ...]
     after: tuple[Task, ...]
 
@@ -149,6 +162,17 @@ class HandPlan:
         return (self.pass_s * len(self.rows) + sum(task.seconds for task in self.tasks)) / 60
 
     @property
+    def time(self) -> str:
+        """The time in words, by what it is spent on."""
+        spent = [
+            f"{name} {sum(task.seconds for task in self.tasks if task.act is act) / 60:.0f}"
+            for act, name in _TIMED.items()
+            if any(task.act is act for task in self.tasks)
+        ]
+        details = f" ({', '.join(spent)})" if spent else ""
+        return f"Time: about {minutes_in_words(self.minutes)}{details}. {GUESSED}"
+
+    @property
     def blocks(self) -> tuple[Block, ...]:
         """Rows without work by hand between them, together."""
         blocks: list[list[HandRow]] = [[self.rows[0]]]
@@ -180,13 +204,57 @@ class HandPlan:
         """Names of all needles from the left."""
         return tuple(needle_name(place, self.width) for place in range(self.width))
 
+    def resumed(self, number: int) -> HandPlan:
+        """The plan from a row on, after a break or a jam: it begins with what hangs on the needles.
+
+        Raises
+        ------
+        InputError
+            If there is no such row.
+        """
+        check_row(number, len(self.rows))
+        if number == 1:
+            return self
+        below, start = self.rows[number - 2], self.rows[number - 1]
+        places = range(below.first, below.first + len(below.other))
+        hang = f"Hang the {len(places)} stitches of row {number - 1}"
+        where = [needle_words(places, self.width)]
+        if self.ribber:
+            beds = [
+                (name, [p for p, other in zip(places, below.other, strict=True) if other == ribber])
+                for name, ribber in (("main bed", False), ("ribber", True))
+            ]
+            where = [f"{name} {needle_words(some, self.width)}" for name, some in beds if some]
+        turns = any(task.act is Act.TURN for task in start.before)
+        side = "right" if start.leftwards != turns else "left"
+        opening = f"{hang} on {', '.join(where)}. The carriage is at the {side}."
+        return replace(self, opening=(opening,), rows=self.rows[number - 1 :])
+
     @property
     def text(self) -> str:
         """The plan to be read at the machine."""
         lines = [f"For {self.machine}", "", *self.opening, ""]
         for section in self.sections:
             lines += [section.heading, *(f"  {line}" for line in section.lines)]
-        return "\n".join([*lines, "", *self.closing, "", *self.notes, ""])
+        return "\n".join([*lines, "", *self.closing, "", *self.notes, self.time, ""])
+
+
+def minutes_in_words(minutes: float) -> str:
+    """Whole minutes, one at least."""
+    count = max(round(minutes), 1)
+    return "1 minute" if count == 1 else f"{count} minutes"
+
+
+def check_row(number: int, rows: int) -> None:
+    """Refuse to begin at a row that there is not.
+
+    Raises
+    ------
+    InputError
+    """
+    if not 1 <= number <= rows:
+        problem = f"there is no row {number}: the piece has {rows}."
+        raise InputError("from_row", problem, f"Begin at row 1 to {rows}.", most=rows)
 
 
 def _repetition(blocks: Sequence[Block], at: int) -> tuple[int, int]:

@@ -20,7 +20,7 @@ def plan_pages(plan: HandPlan, title: str) -> tuple[Page, ...]:
     flow = Flow(BODY_MM)
     flow.title(title or "Untitled")
     flow.text(f"For {plan.machine}.")
-    for note in plan.notes:
+    for note in (*plan.notes, plan.time):
         flow.text(note, bullet=True)
     flow.heading("Begin")
     for line in plan.opening:

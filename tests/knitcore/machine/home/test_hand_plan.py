@@ -165,6 +165,29 @@ def test_a_ribber_is_told_where_one_bed_would_be_quicker() -> None:
     assert quicker == (hand_plan(spots.tile(3, 1), profile("brother")).minutes < plan.minutes)
 
 
+def test_a_plan_goes_on_at_any_row_with_what_hangs_on_the_needles() -> None:
+    chart = StitchChart.of_fabric("seed", rows=6, columns=6)
+    for machine in ("brother", "brother-ribber"):
+        plan = hand_plan(chart, profile(machine))
+        rest = plan.resumed(4)
+        assert rest.rows == plan.rows[3:]
+        assert rest.minutes < plan.minutes
+        assert rest.opening[0].startswith("Hang the 6 stitches of row 3 on ")
+        assert rest.opening[0].endswith("The carriage is at the left.")
+    assert "main bed L2, R1 and R3, ribber L3, L1 and R2" in rest.opening[0]
+    assert plan.resumed(1) is plan
+    with pytest.raises(InputError, match="there is no row 7: the piece has 6"):
+        plan.resumed(7)
+
+
+def test_a_plan_that_goes_on_with_a_turn_says_where_the_carriage_is_before_it() -> None:
+    purl = np.zeros((30, 60), dtype=bool)
+    purl[10:20] = True
+    rest = hand_plan(StitchChart(purl), profile("brother")).resumed(11)
+    assert "The carriage is at the left" not in rest.opening[0] or not rest.rows[0].leftwards
+    assert rest.opening[0].endswith("The carriage is at the left.") == rest.rows[0].leftwards
+
+
 def test_machines_that_are_not_worked_by_hand_and_beds_that_are_too_narrow_are_refused() -> None:
     chart = StitchChart.of_fabric("rib", rows=4, columns=201)
     with pytest.raises(InputError, match="2 pieces of at most 101"):
