@@ -68,6 +68,7 @@ class KnitAlongResult(ResultModel):
     repeat_rows: int = Field(description="Rows after which the pattern begins again.")
     marked: str = Field(description="What the stitches P are.")
     yarns: list[AlongYarn]
+    needles: list[str] = Field(description="Names of all needles from the left, on a machine.")
 
 
 def knit_along(request: KnitAlongRequest, context: Context) -> KnitAlongResult:

@@ -3,7 +3,7 @@
  *
  * @import {Extensions} from "../../types.js"
  *
- * @typedef {"worked" | "finish" | "note" | "tex"} Option
+ * @typedef {"worked" | "finish" | "note" | "tex" | "machine" | "from"} Option
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
@@ -38,6 +38,9 @@ export function ofExtensions(extensions) {
 /** What can be said about a file on paper. @type {Option[]} */
 const PAPER = ["worked", "note", "tex"];
 
+/** What can be said about a plan for a home machine. @type {Option[]} */
+const HOME = ["machine", "from"];
+
 /**
  * A group's formats: each by its name for the service, name and note on the page, options, and whether
  * it is text that can be read here.
@@ -65,6 +68,13 @@ export const KINDS = [
   ]),
   ...kinds("For a machine", [
     ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish"], true],
+  ]),
+  ...kinds("For a home machine", [
+    ["hand-plan", "Plan by the row", "PDF: what to latch up, transfer or turn, and on which needles", HOME],
+    ["hand-plan-text", "The same, as text", "to be read on a phone", HOME, true],
+    ["ayab", "Picture for AYAB", "two colours of knits, or a guide for work by hand; up to 200 needles", []],
+    ["punch-card", "Punch card", "PDF at true size, 24 stitches", ["machine"]],
+    ["punch-card-text", "Punch card, as text", "x for a hole", ["machine"], true],
   ]),
   ...kinds("Data and files", [
     ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],

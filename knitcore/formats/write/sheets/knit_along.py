@@ -55,6 +55,7 @@ class KnitAlong:
     round : whether rows are rounds.
     repeat_rows : rows after which the pattern begins again; all of them if it does not.
     marked : what the stitches P are.
+    needles : names of all places, on a machine.
     """
 
     opening: tuple[str, ...]
@@ -65,6 +66,7 @@ class KnitAlong:
     repeat_rows: int
     marked: str
     yarns: tuple[PieceYarn, ...]
+    needles: tuple[str, ...] = ()
 
 
 def knit_along(
@@ -102,7 +104,7 @@ def knit_along(
         rows = tuple(_machine_row(row) for row in plan.rows)
         marked = "on the ribber" if plan.ribber else "to be latched up"
         texts = (plan.opening, rows, plan.closing, (*plan.notes, plan.time))
-        return KnitAlong(*texts, round=False, repeat_rows=repeat, marked=marked, yarns=piece.yarns)
+        return KnitAlong(*texts, False, repeat, marked, piece.yarns, plan.needles)
     opening, _ = written_sections(piece, construction, first_side=first_side)
     worked = piece_rows(piece, construction, first_side=first_side)
     several = len(piece.yarns) > 1
