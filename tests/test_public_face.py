@@ -22,7 +22,7 @@ from knitcore.chart.in_space import ClothInSpace
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.read.chart_files import PieceInFile
-from knitcore.formats.write.knitout import KnitoutProgram
+from knitcore.machine.program import KnitoutProgram
 from knitcore.materials import Interval
 from knitcore.prediction.learned import LearnedModel
 from knitcore.yarn.study.relax import RelaxOptions

@@ -73,6 +73,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
     },
     "Files": {
         "import": ("files.imports", "Read the chart in FILE."),
+        "machines": ("files.machines", "List knitting machines, explain one, or check a program."),
         "export": ("files.export", "Write CHART for machines, knitters or other programs."),
         "knit-along": ("files.along", "Print CHART row by row, as it is knitted."),
     },

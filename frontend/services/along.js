@@ -10,6 +10,7 @@ import { loadRows, saveRows } from "../design/store.js";
 
 /** Home machines, by their names for the service. @type {Record<string, string>} */
 export const HOME_MACHINES = {
+  ayab: "Brother with AYAB",
   brother: "Brother, one bed",
   "brother-ribber": "Brother with ribber",
   "silver-reed": "Silver Reed, one bed",

@@ -146,6 +146,7 @@ class MachineProfile:
         others.
     position : header ``Position`` of programs; None writes none.
     speed, roller_advance : None if a program does not set them.
+    waste_passes : of waste yarn before a piece, for machines without hooks.
     longest_float_needles : beyond which a float catches on hooks and fingers.
     sources : where figures come from, by field; the empty name stands for all others.
     """
@@ -171,6 +172,7 @@ class MachineProfile:
     speed: ProgramNumbers | None = None
     roller_advance: ProgramNumbers | None = None
     fabric_presser: bool = False
+    waste_passes: Annotated[int, Field(ge=2, le=200)] = 70
     format: Literal["knitcore-machine"] = field(default="knitcore-machine", repr=False)
     version: Literal[1] = field(default=1, repr=False)
 
@@ -196,6 +198,11 @@ class MachineProfile:
     def columns(self) -> int:
         """The widest chart in columns."""
         return -(-self.needles // self.needles_per_column)
+
+    @property
+    def reads_programs(self) -> bool:
+        """Whether it knits from a program; by hand otherwise."""
+        return self.dialect is not Dialect.HAND
 
     @property
     def pitch_mm(self) -> float:
@@ -279,6 +286,24 @@ def profiles() -> Mapping[str, MachineProfile]:
 
 DEFAULT = "swg091n2"
 """The machine of programs for which none is named."""
+
+
+def machine_of(text: str | None) -> MachineProfile:
+    """A machine by its name, or by the text of a profile of one's own; the default one for None.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name, or the profile cannot be used.
+
+    Examples
+    --------
+    >>> machine_of("kniterate").carriers.count
+    6
+    """
+    if text is not None and text.lstrip("\ufeff \t\r\n").startswith("{"):
+        return MachineProfile.read(text)
+    return profile(text or DEFAULT)
 
 
 def profile(name: str) -> MachineProfile:

@@ -1,14 +1,12 @@
 """Charts row by row, for whoever knits them."""
 
-from typing import Annotated
-
 from pydantic import Field
 
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.formats.designs.layout import DesignLayout, piece_of
 from knitcore.formats.write.sheets.knit_along import knit_along as worked_out
-from knitcore.machine.profile import profile
+from knitcore.machine.profile import machine_of
 
 from ...context import Context
 from ...requests.base import RequestModel, ResultModel
@@ -20,16 +18,13 @@ MAX_STITCHES = 250_000
 
 
 class KnitAlongRequest(DesignLayout, RequestModel):
-    """A chart and how it is knitted."""
+    """A chart and how it is knitted: by hand, if no home machine is named."""
 
     chart: ChartInput
     construction: Construction = Field(
         Construction.FLAT, description="Flat or in the round; on a machine always flat."
     )
     first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting by hand.")
-    machine: Annotated[str, Field(max_length=40, examples=["brother-ribber"])] | None = Field(
-        None, description="Home machine on which it is knitted; by hand if left out."
-    )
     from_row: int = Field(1, ge=1, description="The first row, after a break or a jam.")
 
 
@@ -87,7 +82,7 @@ def knit_along(request: KnitAlongRequest, context: Context) -> KnitAlongResult:
             piece_of(chart, request),
             request.construction,
             first_side=request.first_side,
-            machine=None if request.machine is None else profile(request.machine),
+            machine=None if request.machine is None else machine_of(request.machine),
             from_row=request.from_row,
         )
     )

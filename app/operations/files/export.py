@@ -12,8 +12,7 @@ from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_wor
 from knitcore.formats.designs.layout import DesignLayout
 from knitcore.formats.write.chart_key import Symbols
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
-from knitcore.formats.write.knitout import Finish
-from knitcore.machine.profile import profile
+from knitcore.machine.program import Finish
 
 from ...cli.options import out_option
 from ...context import Context
@@ -22,6 +21,7 @@ from ...requests.charts import ChartInput, MaterialName, to_chart
 from ...requests.fabrics import Gauged, LawsRequest
 from ...requests.uploads import Content
 from ..registry import Command, Operation
+from .machines import machine_text
 
 MAX_STITCHES: dict[str, int] = {
     ExportKind.KNITOUT: 20_000,
@@ -33,10 +33,6 @@ MAX_STITCHES: dict[str, int] = {
 
 ExtensionName = Annotated[str, Field(pattern=f"^{IDENTIFIER.pattern}$")]
 """The identifier of a format that is not built in."""
-
-
-MachineName = Annotated[str, Field(max_length=40, examples=["brother-ribber"])]
-"""The identifier of a machine."""
 
 
 class ExportRequest(DesignLayout, Gauged, LawsRequest):
@@ -52,12 +48,12 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
     construction: Construction = Construction.FLAT
     first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="The end of a knitout program.")
+    stitch_number: float | None = Field(
+        None, ge=0, le=10_000, description="Of a knitout program; the machine's own if left out."
+    )
     symbols: Symbols = Field(
         Symbols.DOTS,
         description="Symbols of printed charts: a dot or a dash for a purl, or the Japanese ones.",
-    )
-    machine: MachineName | None = Field(
-        None, description="Machine on which it is knitted; the usual one of the format if left out."
     )
     from_row: int = Field(
         1, ge=1, description="Row at which the plan of a home machine begins, after a break."
@@ -116,12 +112,7 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    options = request.pass_to(
-        ExportOptions,
-        layout=request,
-        gauge=request.relaxed_size,
-        machine=None if request.machine is None else profile(request.machine),
-    )
+    options = request.pass_to(ExportOptions, layout=request, gauge=request.relaxed_size)
     return export_chart(chart, request.to, context.material(request.material), options)
 
 
@@ -133,6 +124,8 @@ def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
 def _command(request: ExportRequest, context: Context, out: Path) -> ExportFacts:
     if "name" not in request.model_fields_set:
         request = request.model_copy(update={"name": out.stem or "Untitled"})
+    if request.machine is not None:
+        request = request.model_copy(update={"machine": machine_text(request.machine)})
     chart = to_chart(request.chart)
     file = _export(chart, request, context)
     out.write_bytes(file.content)
@@ -156,7 +149,8 @@ OPERATION = Operation(
     heavy=True,
     command=Command(
         _lines,
-        more="Knitout is first run on a virtual machine that checks it.",
+        more="Knitout is first run on a virtual machine that checks it. --machine takes a name of "
+        "`knitcore machines`, or the file of a profile of your own.",
         names={
             "linear_density_tex": "--tex",
             "photo": None,

@@ -180,7 +180,7 @@ export function create(studio, { view }) {
       gauge: pieceOf(studio).gauge,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,
-      machine: kind.options.includes("machine") ? machine.value : null,
+      ...(kind.options.includes("machine") && { machine: machine.value }),
       from_row: kind.options.includes("from") && Number.isInteger(from.valueAsNumber) ? from.valueAsNumber : 1,
     };
     const bare = isPattern(kind.to) && body.photo === null;

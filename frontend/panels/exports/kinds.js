@@ -72,7 +72,7 @@ export const KINDS = [
   ...kinds("For a home machine", [
     ["hand-plan", "Plan by the row", "PDF: what to latch up, transfer or turn, and on which needles", HOME],
     ["hand-plan-text", "The same, as text", "to be read on a phone", HOME, true],
-    ["ayab", "Picture for AYAB", "two colours of knits, or a guide for work by hand; up to 200 needles", []],
+    ["ayab", "Picture for AYAB", "two colours of knits, or a guide for work by hand; up to 200 needles", ["machine"]],
     ["punch-card", "Punch card", "PDF at true size, 24 stitches", ["machine"]],
     ["punch-card-text", "Punch card, as text", "x for a hole", ["machine"], true],
   ]),

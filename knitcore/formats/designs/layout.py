@@ -15,6 +15,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart, check_outline, check_outline_size, outline_marks
+from knitcore.machine.profile import MAX_BYTES as MAX_MACHINE
 
 MAX_TEXT = 1_200_000
 MAX_ITEMS = 200
@@ -101,6 +102,11 @@ class DesignLayout(BaseModel):
     regions: list[DesignRegion] = Field(default=[], max_length=MAX_ITEMS)
     repeats: list[DesignRepeat] = Field(default=[], max_length=MAX_ITEMS)
     shelf: list[ShelfPattern] = Field(default=[], max_length=MAX_ITEMS)
+    machine: str | None = Field(
+        None,
+        max_length=MAX_MACHINE,
+        description="Machine of knitting programs: its name, or a profile of one's own as JSON.",
+    )
 
     @model_validator(mode="after")
     def _bounded(self) -> Self:

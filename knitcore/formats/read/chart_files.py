@@ -10,10 +10,10 @@ from knitcore.base.errors import InputError
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.designs.design_file import read_design
-from knitcore.formats.read.knitout_machine import looks_like_program
 from knitcore.formats.read.text_chart import read_text_chart
 from knitcore.formats.read.written_reader import looks_written, read_noted_rows
 from knitcore.garment.piece import Piece
+from knitcore.machine.knitout_machine import looks_like_program
 
 MAX_FILE_BYTES = 16_000_000
 _PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp")

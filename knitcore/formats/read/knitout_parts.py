@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Literal
 
 from knitcore.base.errors import InputError
-from knitcore.formats.read.knitout_machine import Loop
+from knitcore.machine.knitout_machine import Loop
 
 PATTERNED, TWO_BEDS = 4.0, 0.01
 CLEARLY_SMALLER = 0.5

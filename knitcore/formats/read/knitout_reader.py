@@ -1,6 +1,6 @@
 """Knitout programs read as charts.
 
-A program is knitted (:mod:`knitcore.formats.read.knitout_machine`), the piece is told from waste
+A program is knitted (:mod:`knitcore.machine.knitout_machine`), the piece is told from waste
 (:mod:`knitcore.formats.read.knitout_parts`), and its stitches are put into courses and wales
 (:mod:`knitcore.formats.read.knitout_courses`): all from the graph of loops, not from names. A
 program of this library is executed by the package ``knitout-interpreter`` too before it is
@@ -23,14 +23,17 @@ from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.read.chart_files import PieceInFile
 from knitcore.formats.read.knitout_courses import KnittedCourses, fabric_of
-from knitcore.formats.read.knitout_machine import Loop, knitting_of
 from knitcore.formats.read.knitout_parts import main_part, named, part_knitted_by
-from knitcore.formats.write.knitout import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
+from knitcore.machine.knitout_machine import Loop, knitting_of
+from knitcore.machine.profile import DEFAULT, MachineProfile, profile
+from knitcore.machine.program import Finish, KnitoutProgram, knitout_program
+from knitcore.machine.program_check import check_program
 
 MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\S+) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
+_OF_MACHINE = re.compile(r"^(?:x-|;;(?!Carriers)).*\n", re.MULTILINE)
 _COLOURS = ("#efe9dd", "#1f3b70", "#b03a2e", "#2e7d5b", "#c99a2e", "#6b4a8a", "#3a8fb0", "#8a5a3c")
 
 
@@ -100,21 +103,25 @@ def _piece(fabric: KnittedCourses, yarns: Mapping[tuple[str, ...], PieceYarn]) -
 
 
 def verified(
-    chart: StitchChart | Piece, *, finish: Finish = Finish.WASTE, needles: int | None = None
+    chart: StitchChart | Piece,
+    *,
+    finish: Finish = Finish.WASTE,
+    machine: MachineProfile | None = None,
+    stitch_number: float | None = None,
 ) -> KnitoutProgram:
     """The program of a piece, after the virtual machine has knitted exactly this piece from it.
+
+    Parameters are those of :func:`knitcore.machine.program.knitout_program`.
 
     Raises
     ------
     InputError
-        If the chart is wider than the machine, or has more blocks of colour than carriers.
+        If the machine cannot knit the piece.
     KnitoutMismatchError
-        If the machine refuses the program, warns, or knits something else.
+        If the virtual machine refuses the program, warns, or knits something else.
     """
     piece = Piece.of(chart).cropped()
-    made = knitout_program(
-        piece, finish=finish, needles=MAX_NEEDLES if needles is None else needles
-    )
+    made = knitout_program(piece, finish=finish, machine=machine, stitch_number=stitch_number)
     try:
         loops, warned = _interpreted(made.text)
         knitted = knitted_chart(made.text)
@@ -124,6 +131,8 @@ def verified(
         raise KnitoutMismatchError("the virtual machine knitted another chart.")
     if warned:
         raise KnitoutMismatchError(f"the virtual machine warned: {warned[0]}")
+    if problems := check_program(made.text, machine or profile(DEFAULT)):
+        raise KnitoutMismatchError(f"the machine's profile does not allow it: {problems[0]}")
     return made
 
 
@@ -142,11 +151,16 @@ def _interpreted(program: str) -> tuple[_Graph, list[str]]:
     from virtual_knitting_machine.knitting_machine_exceptions.Knitting_Machine_Error import (
         Knitting_Machine_Error,
     )
+    from virtual_knitting_machine.knitting_machine_warnings.Yarn_Carrier_System_Warning import (
+        In_Loose_Carrier_Warning,
+    )
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
+        # A machine without a hook holds the end of a yarn by waste yarn.
+        warnings.simplefilter("ignore", In_Loose_Carrier_Warning)
         try:
-            lines = _parser().parse_knitout_to_instructions(program)
+            lines = _parser().parse_knitout_to_instructions(_in_plain_knitout(program))
             graph: Any = Knitout_Executer(lines).resulting_knit_graph
         # For some mistakes in a program the interpreter raises Python's own errors.
         except (
@@ -173,6 +187,11 @@ def _interpreted(program: str) -> tuple[_Graph, list[str]]:
         for o in loops
     ]
     return graph_of_machine, [_one_line(w.message) for w in caught]
+
+
+def _in_plain_knitout(program: str) -> str:
+    """A program for the package's only machine, without extension operations and headers."""
+    return _OF_MACHINE.sub("", program)
 
 
 @lru_cache(maxsize=1)

@@ -22,7 +22,6 @@ from knitcore.formats.write.chart_key import (
     multiple_words,
 )
 from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg, to_pdf
-from knitcore.formats.write.knitout import Finish
 from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
 from knitcore.formats.write.png import write_grey, write_png
@@ -38,7 +37,8 @@ from knitcore.machine.home.ayab import ayab_picture
 from knitcore.machine.home.hand_plan import hand_plan
 from knitcore.machine.home.plan_rows import HandPlan
 from knitcore.machine.home.punch_card import punch_card
-from knitcore.machine.profile import MachineProfile, profile
+from knitcore.machine.profile import MachineProfile, machine_of
+from knitcore.machine.program import Finish
 from knitcore.materials import Material
 from knitcore.prediction.size import RelaxedSize
 
@@ -77,12 +77,12 @@ class ExportOptions:
     construction : flat or round, for charts and written rows.
     first_side : the side of row 1 in flat knitting.
     finish : how a knitout program ends.
+    stitch_number : of a knitout program; that of the machine's profile if none is given.
     name : of the design.
     note : printed on charts, and kept in the project file.
-    layout : outline, regions and their yarns, and what else the project file keeps.
+    layout : outline, regions and their yarns, the machine, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
     symbols : of knits and purls in printed charts.
-    machine : on which it is knitted; None leaves the usual one of the format.
     from_row : at which a plan for a home machine begins, after a break or a jam.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
@@ -91,6 +91,7 @@ class ExportOptions:
     construction: Construction = Construction.FLAT
     first_side: Side = Side.RS
     finish: Finish = Finish.WASTE
+    stitch_number: float | None = None
     name: str = "Untitled"
     note: str = ""
     layout: DesignLayout = field(default_factory=DesignLayout)
@@ -98,7 +99,6 @@ class ExportOptions:
     photo: bytes | None = None
     gauge: RelaxedSize | None = None
     symbols: Symbols = Symbols.DOTS
-    machine: MachineProfile | None = None
     from_row: int = 1
 
 
@@ -221,13 +221,23 @@ def _of_extension(kind: str) -> Exporter:
 
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    program = verified(piece, finish=options.finish)
-    notes = ["Knitted on a virtual V-bed machine: the face is this chart."]
+    machine = machine_of(options.layout.machine)
+    program = verified(
+        piece, finish=options.finish, machine=machine, stitch_number=options.stitch_number
+    )
+    notes = [
+        f"Made for {machine.name}, with stitch number {program.stitch_number:g}.",
+        "Knitted on a virtual V-bed machine: the face is this chart.",
+    ]
+    if options.stitch_number is None:
+        notes.append(f"The stitch number is a start ({machine.source('stitch_number')}).")
     if not piece.is_rectangle:
         notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
     if program.carriers > 1:
         yarns = "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
         notes.append(f"Intarsia with {program.carriers} carriers: {yarns}.")
+    if program.draws_waste:
+        notes.append("All other carriers hold yarns: waste yarn takes the place of a draw thread.")
     figures = program.transfers, program.carriers
     return ExportedFile(
         ExportKind.KNITOUT, program.text.encode(), ".k", _TEXT, tuple(notes), *figures
@@ -247,26 +257,31 @@ def _hand_plan_text(piece: Piece, _: Material, options: ExportOptions) -> Export
 
 
 def _planned(piece: Piece, options: ExportOptions) -> tuple[HandPlan, tuple[str, ...]]:
-    plan = hand_plan(piece, options.machine or profile("brother")).resumed(options.from_row)
+    plan = hand_plan(piece, _home(options)).resumed(options.from_row)
     if options.construction is Construction.ROUND:
         return plan, (*plan.notes, plan.time, "The plan is worked flat: join the sides.")
     return plan, (*plan.notes, plan.time)
 
 
+def _home(options: ExportOptions, usual: str = "brother") -> MachineProfile:
+    """The design's machine, or the usual one of a format."""
+    return machine_of(options.layout.machine or usual)
+
+
 def _ayab(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    picture = ayab_picture(piece, options.machine or profile("ayab"))
+    picture = ayab_picture(piece, _home(options, "ayab"))
     content = write_grey(picture.grey)
     return ExportedFile(ExportKind.AYAB, content, ".png", "image/png", picture.notes)
 
 
 def _punch_card(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    card = punch_card(piece, options.machine or profile("brother"))
+    card = punch_card(piece, _home(options))
     content = to_pdf(card_pages(card, options.name), options.name)
     return ExportedFile(ExportKind.PUNCH_CARD, content, *_PDF, card.notes)
 
 
 def _punch_card_text(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    card = punch_card(piece, options.machine or profile("brother"))
+    card = punch_card(piece, _home(options))
     return ExportedFile(ExportKind.PUNCH_CARD_TEXT, card.text.encode(), *_TXT, card.notes)
 
 

@@ -59,6 +59,9 @@ def ayab_picture(chart: StitchChart | Piece, profile: MachineProfile) -> AyabPic
     [[255, 255, 255, 0]]
     """
     piece = Piece.of(chart)
+    if profile.identifier.startswith("silver-reed"):
+        problem = "AYAB drives Brother's electronic machines, not Silver Reed's."
+        raise InputError("machine", problem, "Choose Brother, with or without ribber, or AYAB.")
     if piece.cropped().chart.columns > NEEDLES:
         problem = f"{piece.chart.columns} stitches are wider than the {NEEDLES} needles of AYAB."
         raise InputError("chart", problem, f"Knit pieces of at most {NEEDLES} and join them.")

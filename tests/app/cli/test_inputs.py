@@ -21,7 +21,7 @@ from app.requests.charts import PureFabricChart, to_chart, to_repeat
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.write.knitout import knitout_program
+from knitcore.machine.program import knitout_program
 from tests.app.command_line import run
 
 EXAMPLE_OF_EACH = ("chart.txt", "KKP/PPK", "- for standard input", "rib with --size 31x20")

@@ -37,6 +37,11 @@ def test_what_ayab_would_cut_off_is_refused() -> None:
         ayab_picture(StitchChart.of_fabric("rib", rows=2, columns=NEEDLES + 1), WIDE)
 
 
+def test_machines_that_ayab_does_not_drive_are_refused() -> None:
+    with pytest.raises(InputError, match="not Silver Reed's"):
+        ayab_picture(StitchChart.parse("PKKK"), profile("silver-reed"))
+
+
 def test_more_yarns_than_ayab_takes_are_refused() -> None:
     yarns = tuple(PieceYarn(str(i), "#ffffff") for i in range(7))
     chart = ShapedChart.rectangle(StitchChart(np.zeros((1, 7), dtype=bool)))

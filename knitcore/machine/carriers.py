@@ -4,9 +4,7 @@ from dataclasses import dataclass
 
 from knitcore.base.errors import InputError
 from knitcore.garment.piece import Piece, YarnRun
-
-MAX_CARRIERS = 10
-"""Carriers of a Shima Seiki SWG091N2 and of the virtual machine; one is kept for waste yarn."""
+from knitcore.machine.profile import CarrierPark
 
 
 @dataclass(frozen=True)
@@ -27,21 +25,30 @@ class CarrierRow:
 
 @dataclass(frozen=True)
 class CarrierPlan:
-    """The carriers of all rows, and which yarn (an index) each holds."""
+    """The carriers of all rows, and which yarn (an index) each holds.
+
+    Attributes
+    ----------
+    waste : the carrier of waste yarn and separate strands.
+    draw : the carrier of the draw thread; that of waste yarn if all others hold yarns.
+    """
 
     rows: tuple[CarrierRow, ...]
     yarns: dict[int, int]
+    waste: int
+    draw: int | None = None
 
-    @property
-    def waste(self) -> int:
-        """The carrier of waste yarn and separate strands."""
-        return len(self.yarns) + 1
+    def next_row(self, carrier: int, after: int) -> int | None:
+        """The next row that brings a carrier in again, if there is one."""
+        later = range(after + 1, len(self.rows))
+        return next((row for row in later if carrier in self.rows[row].new), None)
 
 
-def plan_carriers(piece: Piece) -> CarrierPlan:
+def plan_carriers(piece: Piece, park: CarrierPark) -> CarrierPlan:
     """Carriers that stay with a block of a colour for as long as it continues.
 
-    A block takes over the carrier of the run below it that it shares most columns with.
+    A block takes over the carrier of the run below it that it shares most columns with. The draw
+    thread's carrier is the last to be used: waste yarn can take its place.
 
     Raises
     ------
@@ -49,6 +56,11 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
         If the machine has too few carriers.
     """
     yarns: dict[int, int] = {}
+    names = [c for c in range(1, park.count + 1) if c not in (park.waste, park.draw)]
+    if park.waste is None:
+        del names[-1]
+    if park.draw is not None:
+        names.append(park.draw)
     free: dict[int, list[int]] = {}
     active: dict[int, YarnRun] = {}
     rows = []
@@ -62,20 +74,22 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
         for index, run in enumerate(runs):
             if index not in taken:
                 waiting = free.get(run.yarn)
-                taken[index] = waiting.pop() if waiting else len(yarns) + 1
+                if not waiting and len(yarns) == len(names):
+                    blocks = len(yarns) + len(runs) - len(taken)
+                    raise InputError(
+                        "regions",
+                        f"row {row + 1} brings the blocks of colour to {blocks}, each with a "
+                        f"carrier of its own; the machine has {park.count}, one of them for waste.",
+                        "Use fewer or larger blocks, or knit it by hand from the written rows.",
+                    )
+                taken[index] = waiting.pop() if waiting else names[len(yarns)]
                 yarns[taken[index]] = run.yarn
                 new.add(taken[index])
-        if len(yarns) >= MAX_CARRIERS:
-            raise InputError(
-                "regions",
-                f"row {row + 1} brings the blocks of colour to {len(yarns)}, each with a carrier "
-                f"of its own; the machine has {MAX_CARRIERS}, one of them for waste.",
-                "Use fewer or larger blocks, or knit it by hand from the written rows.",
-            )
         active = {taken[index]: run for index, run in enumerate(runs)}
         placed = tuple((run, taken[index]) for index, run in enumerate(runs))
         rows.append(CarrierRow(placed, frozenset(new), ended))
-    return CarrierPlan(tuple(rows), yarns)
+    waste = park.waste or next(c for c in range(1, park.count + 1) if c not in yarns)
+    return CarrierPlan(tuple(rows), yarns, waste, waste if park.draw in yarns else park.draw)
 
 
 def _inherited(active: dict[int, YarnRun], runs: tuple[YarnRun, ...]) -> dict[int, int]:
