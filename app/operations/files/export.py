@@ -56,7 +56,7 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
         description="Symbols of printed charts: a dot or a dash for a purl, or the Japanese ones.",
     )
     from_row: int = Field(
-        1, ge=1, description="Row at which the plan of a home machine begins, after a break."
+        1, ge=1, description="Row at which a program or a plan begins, after a break or a jam."
     )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, description="Note to print with the chart.")

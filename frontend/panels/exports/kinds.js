@@ -67,7 +67,7 @@ export const KINDS = [
     ["knitspeak", "KnitSpeak", "for Stitch Maps and other tools; rectangular charts only", ["worked"], true],
   ]),
   ...kinds("For a machine", [
-    ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish"], true],
+    ["knitout", "Knitout", "for a V-bed machine; knitted on a virtual one first", ["finish", "from"], true],
   ]),
   ...kinds("For a home machine", [
     ["hand-plan", "Plan by the row", "PDF: what to latch up, transfer or turn, and on which needles", HOME],

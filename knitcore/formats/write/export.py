@@ -83,7 +83,7 @@ class ExportOptions:
     layout : outline, regions and their yarns, the machine, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
     symbols : of knits and purls in printed charts.
-    from_row : at which a plan for a home machine begins, after a break or a jam.
+    from_row : at which a program, or the plan of a home machine, begins after a break or a jam.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
     """
@@ -222,6 +222,7 @@ def _of_extension(kind: str) -> Exporter:
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     machine = machine_of(options.layout.machine)
+    piece = piece.from_row(options.from_row)
     program = verified(
         piece, finish=options.finish, machine=machine, stitch_number=options.stitch_number
     )
@@ -229,6 +230,11 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
         f"Made for {machine.name}, with stitch number {program.stitch_number:g}.",
         "Knitted on a virtual V-bed machine: the face is this chart.",
     ]
+    if options.from_row > 1:
+        notes.append(
+            f"It begins with row {options.from_row} on a cast-on of its own: hold row "
+            f"{options.from_row - 1} on waste yarn, and graft the two."
+        )
     if options.stitch_number is None:
         notes.append(f"The stitch number is a start ({machine.source('stitch_number')}).")
     if not piece.is_rectangle:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 
-from knitcore.base.errors import InputError
+from knitcore.garment.piece import check_row
 from knitcore.machine.home.needle_places import needle_name, needle_words
 
 GUESSED = "Minutes are our guess for a practised knitter."
@@ -243,18 +243,6 @@ def minutes_in_words(minutes: float) -> str:
     """Whole minutes, one at least."""
     count = max(round(minutes), 1)
     return "1 minute" if count == 1 else f"{count} minutes"
-
-
-def check_row(number: int, rows: int) -> None:
-    """Refuse to begin at a row that there is not.
-
-    Raises
-    ------
-    InputError
-    """
-    if not 1 <= number <= rows:
-        problem = f"there is no row {number}: the piece has {rows}."
-        raise InputError("from_row", problem, f"Begin at row 1 to {rows}.", most=rows)
 
 
 def _repetition(blocks: Sequence[Block], at: int) -> tuple[int, int]:

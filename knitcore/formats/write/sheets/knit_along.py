@@ -11,10 +11,10 @@ from knitcore.base.arrays import runs
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.formats.write.written_pattern import piece_row_words, written_sections
-from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
+from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, check_row
 from knitcore.garment.worked_piece import PieceRow, piece_rows
 from knitcore.machine.home.hand_plan import hand_plan
-from knitcore.machine.home.plan_rows import HandRow, check_row
+from knitcore.machine.home.plan_rows import HandRow
 from knitcore.machine.profile import MachineProfile
 
 SIDES = {Side.RS: "right side", Side.WS: "wrong side"}
