@@ -10,11 +10,11 @@ import { loadRows, saveRows } from "../design/store.js";
 
 /** Home machines, by their names for the service. @type {Record<string, string>} */
 export const HOME_MACHINES = {
-  ayab: "Brother with AYAB",
   brother: "Brother, one bed",
   "brother-ribber": "Brother with ribber",
   "silver-reed": "Silver Reed, one bed",
   "silver-reed-ribber": "Silver Reed with ribber",
+  ayab: "Brother with AYAB",
 };
 
 /** How a piece is knitted. @type {Record<string, string>} */

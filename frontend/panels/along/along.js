@@ -215,9 +215,9 @@ export function create(studio) {
   });
   row.addEventListener("pointerup", ({ clientX, clientY }) => {
     if (!down) return;
-    const [across, along] = [clientX - down.x, clientY - down.y];
+    const [across, up] = [clientX - down.x, clientY - down.y];
     down = null;
-    if (Math.abs(across) > SWIPE && Math.abs(across) > 2 * Math.abs(along)) step(across < 0 ? 1 : -1);
+    if (Math.abs(across) > SWIPE && Math.abs(across) > 2 * Math.abs(up)) step(across < 0 ? 1 : -1);
   });
   element.addEventListener("close", () => void awake.release());
   new ResizeObserver(() => show()).observe(element);
