@@ -80,6 +80,7 @@ SECTIONS: dict[str, dict[str, Entry]] = {
             "Report passes, tightest loop, minutes and yarn of a program.",
         ),
         "dial": ("machine.dial", "Give a machine's stitch number for a loop length."),
+        "knit-along": ("files.along", "Print CHART row by row, as it is knitted."),
     },
     "Serve": {
         "serve": (".serve:command", ""),
@@ -196,7 +197,7 @@ def _loaded(name: str, module: str, line: str) -> click.Command:
     from ..operations.registry import operations_in
     from .commands import command_of
 
-    (operation,) = (of for of in operations_in(module) if of.name == name)
+    (operation,) = (of for of in operations_in(module) if of.name == name.replace("-", "_"))
     return command_of(operation, name, line)
 
 

@@ -6,7 +6,7 @@
  * @import {Studio} from "../state/studio.js"
  * @import {IconName} from "../elements/icons.js"
  *
- * @typedef {"account" | "atlas" | "compare" | "conflict" | "designs" | "exports" | "fill" | "find" | "gallery"
+ * @typedef {"account" | "along" | "atlas" | "compare" | "conflict" | "designs" | "exports" | "fill" | "find" | "gallery"
  *   | "garments" | "help" | "import" | "palette" | "regions" | "repeats" | "resize" | "share" | "tour"
  *   | "versions" | "yarns"} PanelName that are loaded when they are opened
  * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: PanelName) => void,

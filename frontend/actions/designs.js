@@ -20,6 +20,7 @@ export const DESIGNS = [
   }),
   action("yarns", "Own yarns …", ["Shift+Y"], { icon: "yarn" }, ({ open }) => open("yarns")),
   action("exports", "Export, all formats …", ["Mod+E"], { icon: "export" }, ({ open }) => open("exports")),
+  action("knit-along", "Knit along, row by row …", ["Shift+K"], { icon: "rows" }, ({ open }) => open("along")),
   action(
     "project-file",
     "Save as a project file",

@@ -16,10 +16,15 @@ const DESIGN = "knitcore.design";
 const HISTORY = "knitcore.history";
 const SHELF = "knitcore.shelf";
 const GAUGES = "knitcore.gauges";
+const PLACES = "knitcore.places";
+const ROWS = "knitcore.rows";
 const SETTINGS = "knitcore.settings";
 const HISTORY_LIMIT = 1_000_000;
 /** Characters of all gauges, whose cloths are charts. */
 const GAUGES_LIMIT = 200_000;
+/** Pieces of which the row at hand is kept, and characters of the rows of the last one. */
+const PLACES_LIMIT = 100;
+const ROWS_LIMIT = 1_500_000;
 
 /**
  * What is read of an entry; where there is none, it is damaged, or storage is closed to us, something else.
@@ -64,7 +69,7 @@ export const saveDesign = (design, history) =>
 
 /** Forget the design, its history, own patterns and gauges: somebody else may use this browser next. */
 export function forgetDesign() {
-  for (const key of [DESIGN, HISTORY, SHELF, GAUGES]) localStorage.removeItem(key);
+  for (const key of [DESIGN, HISTORY, SHELF, GAUGES, PLACES, ROWS]) localStorage.removeItem(key);
 }
 
 /** @template {object} T @param {T} defaults @returns {T} */
@@ -90,6 +95,41 @@ export function saveGauges(gauges) {
   let room = GAUGES_LIMIT;
   const latest = gauges.toReversed().filter(([cloth]) => (room -= cloth.length) >= 0);
   put([GAUGES, JSON.stringify(latest.reverse())]);
+}
+
+/**
+ * Where somebody is in knitting a piece: the row at hand, 0 before the first, and a count of their own.
+ *
+ * @typedef {{row: number, count: number}} KnittingPlace
+ */
+
+/** @returns {[piece: string, place: KnittingPlace][]} the last one last */
+const loadPlaces = () => stored(PLACES, (text) => JSON.parse(text ?? "[]"), []);
+
+/** @param {string} piece a design and a way to knit it @returns {KnittingPlace} */
+export const loadPlace = (piece) => ({ row: 0, count: 0, ...new Map(loadPlaces()).get(piece) });
+
+/** @param {string} piece @param {KnittingPlace} place @returns {boolean} whether it is kept */
+export function savePlace(piece, place) {
+  const others = loadPlaces().filter(([name]) => name !== piece);
+  return put([PLACES, JSON.stringify([...others, [piece, place]].slice(-PLACES_LIMIT))]);
+}
+
+/** What was kept of a request, for when the service is away. @param {string} request @returns {unknown} */
+export const loadRows = (request) =>
+  stored(
+    ROWS,
+    (text) => {
+      const [kept, rows] = JSON.parse(text ?? "[]");
+      return kept === request ? rows : null;
+    },
+    null,
+  );
+
+/** @param {string} request @param {unknown} rows */
+export function saveRows(request, rows) {
+  const text = JSON.stringify([request, rows]);
+  if (text.length <= ROWS_LIMIT) put([ROWS, text]);
 }
 
 /** A random UUID, also where the page is not served over a secure origin. */

@@ -11,6 +11,7 @@
 /** @type {Record<PanelName, () => Promise<PanelModule>>} */
 const PANELS = {
   account: () => import("./dialogs/account.js"),
+  along: () => import("./along/along.js"),
   atlas: async () => ({ create: (await import("./inverse/inverse.js")).opening("atlas") }),
   fill: () => import("./inverse/filling.js"),
   find: async () => ({ create: (await import("./inverse/inverse.js")).opening("find") }),

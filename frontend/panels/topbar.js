@@ -262,7 +262,7 @@ function designsMenu(context) {
     null,
     ...["designs", "duplicate"].map(menuItem),
     null,
-    ...["versions", "compare", "share"].map(menuItem),
+    ...["knit-along", "versions", "compare", "share"].map(menuItem),
     null,
     ...["import", "project-file"].map(menuItem),
     null,

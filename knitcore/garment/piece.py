@@ -108,6 +108,21 @@ class Piece(Result):
         cells: Mask = self.shaped.stitch & (self.yarn_of == yarn)
         return cells
 
+    def from_row(self, number: int) -> Piece:
+        """The piece from a row on, counted from 1, without columns that have no stitch.
+
+        Raises
+        ------
+        InputError
+            If there is no such row.
+        """
+        check_row(number, self.chart.rows)
+        if number == 1:
+            return self
+        rows = slice(number - 1, None)
+        shaped = ShapedChart(StitchChart(self.chart.purl[rows]), self.shaped.stitch[rows])
+        return Piece(shaped, self.yarns, self.yarn_of[rows], self.gauge).cropped()
+
     def cropped(self) -> Piece:
         """The piece without columns that have no stitch."""
         used = np.flatnonzero(self.shaped.stitch.any(axis=0))
@@ -129,6 +144,18 @@ class Piece(Result):
 
     def __hash__(self) -> int:
         return hash((self.shaped, frozenset(self.yarns)))
+
+
+def check_row(number: int, rows: int) -> None:
+    """Refuse to begin at a row that there is not.
+
+    Raises
+    ------
+    InputError
+    """
+    if not 1 <= number <= rows:
+        problem = f"there is no row {number}: the piece has {rows}."
+        raise InputError("from_row", problem, f"Begin at row 1 to {rows}.", most=rows)
 
 
 def yarn_name(index: int) -> str:

@@ -56,6 +56,9 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
         Symbols.DOTS,
         description="Symbols of printed charts: a dot or a dash for a purl, or the Japanese ones.",
     )
+    from_row: int = Field(
+        1, ge=1, description="Row at which a program or a plan begins, after a break or a jam."
+    )
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, description="Note to print with the chart.")
     linear_density_tex: float | None = Field(

@@ -11,10 +11,11 @@ import { ApiError, api, fetched } from "../../api.js";
 import { base64 } from "../../grid/bits.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
+import { HOME_MACHINES } from "../../services/along.js";
 import { download } from "../../services/exporter.js";
 import { pieceOf } from "../../services/scope.js";
 import { dialog } from "../../widgets/dialog.js";
-import { choice, labelled, numberField } from "../../widgets/fields.js";
+import { choice, labelled, numberField, selectField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
@@ -25,6 +26,18 @@ import { attempt } from "../../widgets/problem.js";
 
 /** Characters of a text file that are shown. */
 const MAX_SHOWN = 6000;
+
+/** What is added to the name of a file that ends like another of the design. @type {Record<string, string>} */
+const SORTS = {
+  report: " report",
+  pattern: " pattern",
+  "pattern-svg": " pattern",
+  "hand-plan": " plan",
+  "hand-plan-text": " plan",
+  ayab: " AYAB",
+  "punch-card": " card",
+  "punch-card-text": " card",
+};
 
 /** Size of the picture in a pattern; one of the view has the proportions of that. */
 const PHOTO_PX = { width: 1400, height: 800 };
@@ -42,6 +55,8 @@ export function create(studio, { view }) {
     "RS",
     (value) => (chosen.first_side = value),
   );
+  const home = selectField({}, HOME_MACHINES);
+  const from = numberField({ min: "1", step: "1", value: "1", "aria-label": "From row" });
   const note = h("p", { class: "muted" });
   /** @type {Record<Option, HTMLElement>} */
   const options = {
@@ -62,6 +77,8 @@ export function create(studio, { view }) {
       (value) => (chosen.finish = value),
     ),
     machine: machine.element,
+    home: h("label", { class: "line gap-8" }, "Machine", home),
+    from: labelled("From row", from, "to go on after a break or a jam"),
     tex: labelled("Yarn, tex (g/km)", tex, "for its mass"),
     note,
   };
@@ -164,6 +181,8 @@ export function create(studio, { view }) {
       gauge: pieceOf(studio).gauge,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,
+      ...(kind.options.includes("home") && { machine: home.value }),
+      from_row: kind.options.includes("from") && Number.isInteger(from.valueAsNumber) ? from.valueAsNumber : 1,
     };
     const bare = isPattern(kind.to) && body.photo === null;
     const file = await attempt(status, () => api.run("export", /** @type {ExportRequest} */ (body)));
@@ -206,9 +225,7 @@ export function create(studio, { view }) {
   /** @param {ExportResult} file @param {ExportKind} format of which it is: another may be chosen by now */
   function show(file, { to, text: isText }) {
     const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
-    // Report, pattern and chart of one design have the same ending.
-    const sort = to === "report" ? " report" : isPattern(to) ? " pattern" : "";
-    const name = file.name.replace(/(\.\w+)$/, `${sort}$1`);
+    const name = file.name.replace(/(\.\w+)$/, `${SORTS[to] ?? ""}$1`);
     const save = () => download(name, new Blob([bytes], { type: file.media_type }));
     const facts = [
       `${name}, ${(file.bytes / 1000).toFixed(1)} kB`,

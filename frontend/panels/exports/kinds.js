@@ -3,7 +3,7 @@
  *
  * @import {Extensions} from "../../types.js"
  *
- * @typedef {"worked" | "finish" | "machine" | "note" | "tex"} Option
+ * @typedef {"worked" | "finish" | "machine" | "home" | "from" | "note" | "tex"} Option
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
@@ -38,6 +38,9 @@ export function ofExtensions(extensions) {
 /** What can be said about a file on paper. @type {Option[]} */
 const PAPER = ["worked", "note", "tex"];
 
+/** What can be said about a plan for a home machine. @type {Option[]} */
+const HOME = ["home", "from"];
+
 /**
  * A group's formats: each by its name for the service, name and note on the page, options, and whether
  * it is text that can be read here.
@@ -64,7 +67,14 @@ export const KINDS = [
     ["knitspeak", "KnitSpeak", "for Stitch Maps and other tools; rectangular charts only", ["worked"], true],
   ]),
   ...kinds("For a machine", [
-    ["knitout", "Knitout", "for your machine; knitted on a virtual one first", ["machine", "finish", "tex"], true],
+    ["knitout", "Knitout", "for your machine; knitted on a virtual one first", ["machine", "finish", "from", "tex"], true],
+  ]),
+  ...kinds("For a home machine", [
+    ["hand-plan", "Plan by the row", "PDF: what to latch up, transfer or turn, and on which needles", HOME],
+    ["hand-plan-text", "The same, as text", "to be read on a phone", HOME, true],
+    ["ayab", "Picture for AYAB", "two colours of knits, or a guide for work by hand; up to 200 needles", ["home"]],
+    ["punch-card", "Punch card", "PDF at true size, 24 stitches", ["home"]],
+    ["punch-card-text", "Punch card, as text", "x for a hole", ["home"], true],
   ]),
   ...kinds("Data and files", [
     ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],

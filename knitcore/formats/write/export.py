@@ -25,14 +25,20 @@ from knitcore.formats.write.chart_key import (
 from knitcore.formats.write.drawn_page import Page, letters_lacking, to_long_svg, to_pdf
 from knitcore.formats.write.knitspeak import write_knitspeak
 from knitcore.formats.write.pattern import pattern_pages
-from knitcore.formats.write.png import write_png
+from knitcore.formats.write.png import write_grey, write_png
 from knitcore.formats.write.report import design_report
+from knitcore.formats.write.sheets.card_sheet import card_pages
+from knitcore.formats.write.sheets.plan_sheet import plan_pages
 from knitcore.formats.write.stitch_values import write_csv, write_vtu
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import YarnUse, yarn_use
-from knitcore.machine.profile import machine_of
+from knitcore.machine.home.ayab import ayab_picture
+from knitcore.machine.home.hand_plan import hand_plan
+from knitcore.machine.home.plan_rows import HandPlan
+from knitcore.machine.home.punch_card import punch_card
+from knitcore.machine.profile import MachineProfile, machine_of
 from knitcore.machine.program import Finish
 from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
@@ -47,6 +53,11 @@ class ExportKind(StrEnum):
     PNG = "png"
     SVG = "svg"
     PDF = "pdf"
+    HAND_PLAN = "hand-plan"
+    HAND_PLAN_TEXT = "hand-plan-text"
+    AYAB = "ayab"
+    PUNCH_CARD = "punch-card"
+    PUNCH_CARD_TEXT = "punch-card-text"
     PATTERN = "pattern"
     PATTERN_SVG = "pattern-svg"
     REPORT = "report"
@@ -74,6 +85,7 @@ class ExportOptions:
     layout : outline, regions and their yarns, the machine, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
     symbols : of knits and purls in printed charts.
+    from_row : at which a program, or the plan of a home machine, begins after a break or a jam.
     photo : a PNG picture of the cloth, for the first page of a pattern.
     gauge : relaxed size of the mean stitch, if known.
     measured_yarn : yarn in a stitch of this piece, if known.
@@ -91,6 +103,7 @@ class ExportOptions:
     gauge: RelaxedSize | None = None
     measured_yarn: MeasuredYarn | None = None
     symbols: Symbols = Symbols.DOTS
+    from_row: int = 1
 
 
 @dataclass(frozen=True)
@@ -213,6 +226,7 @@ def _of_extension(kind: str) -> Exporter:
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     machine = machine_of(options.layout.machine)
+    piece = piece.from_row(options.from_row)
     program = verified(
         piece, finish=options.finish, machine=machine, stitch_number=options.stitch_number
     )
@@ -222,6 +236,11 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
         f"Made for {machine.name}, with stitch number {program.stitch_number:g}{start}.",
         "Knitted on a virtual V-bed machine: the face is this chart.",
     ]
+    if options.from_row > 1:
+        notes.append(
+            f"It begins with row {options.from_row} on a cast-on of its own: hold row "
+            f"{options.from_row - 1} on waste yarn, and graft the two."
+        )
     if not piece.is_rectangle:
         notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
     if program.carriers > 1:
@@ -233,6 +252,47 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     return ExportedFile(
         ExportKind.KNITOUT, program.text.encode(), ".k", _TEXT, tuple(notes), *figures
     )
+
+
+def _hand_plan(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    plan, notes = _planned(piece, options)
+    content = to_pdf(plan_pages(plan, options.name), options.name)
+    return ExportedFile(ExportKind.HAND_PLAN, content, *_PDF, notes)
+
+
+def _hand_plan_text(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    plan, notes = _planned(piece, options)
+    text = f"{options.name}\n{plan.text}"
+    return ExportedFile(ExportKind.HAND_PLAN_TEXT, text.encode(), *_TXT, notes)
+
+
+def _planned(piece: Piece, options: ExportOptions) -> tuple[HandPlan, tuple[str, ...]]:
+    plan = hand_plan(piece, _home(options)).resumed(options.from_row)
+    if options.construction is Construction.ROUND:
+        return plan, (*plan.notes, plan.time, "The plan is worked flat: join the sides.")
+    return plan, (*plan.notes, plan.time)
+
+
+def _home(options: ExportOptions, usual: str = "brother") -> MachineProfile:
+    """The design's machine, or the usual one of a format."""
+    return machine_of(options.layout.machine or usual)
+
+
+def _ayab(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    picture = ayab_picture(piece, _home(options, "ayab"))
+    content = write_grey(picture.grey)
+    return ExportedFile(ExportKind.AYAB, content, ".png", "image/png", picture.notes)
+
+
+def _punch_card(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    card = punch_card(piece, _home(options))
+    content = to_pdf(card_pages(card, options.name), options.name)
+    return ExportedFile(ExportKind.PUNCH_CARD, content, *_PDF, card.notes)
+
+
+def _punch_card_text(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    card = punch_card(piece, _home(options))
+    return ExportedFile(ExportKind.PUNCH_CARD_TEXT, card.text.encode(), *_TXT, card.notes)
 
 
 def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
@@ -348,6 +408,11 @@ _BUILT_IN = (
     Exporter(ExportKind.PATTERN, *_PDF, lambda p, m, o: to_pdf(_pattern(p, m, o), o.name)),
     Exporter(ExportKind.PATTERN_SVG, *_SVG, lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name)),
     Exporter(ExportKind.REPORT, *_PDF, _report),
+    Exporter(ExportKind.HAND_PLAN, *_PDF, _hand_plan),
+    Exporter(ExportKind.HAND_PLAN_TEXT, *_TXT, _hand_plan_text),
+    Exporter(ExportKind.AYAB, ".png", "image/png", _ayab),
+    Exporter(ExportKind.PUNCH_CARD, *_PDF, _punch_card),
+    Exporter(ExportKind.PUNCH_CARD_TEXT, *_TXT, _punch_card_text),
     Exporter(
         ExportKind.TEXT,
         *_TXT,

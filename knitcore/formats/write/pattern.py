@@ -5,33 +5,21 @@ The same pages are written as PDF and as SVG. Sizes are those of the cloth at re
 
 from __future__ import annotations
 
-import io
 import re
-import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from PIL import Image, ImageChops
 
 from knitcore.base.arrays import Array, Mask
-from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.row_sides import Construction
 from knitcore.draw.laid_out import SizeAtRest, laid_corners_mm, size_at_rest
-from knitcore.formats.write.chart_drawing import A4_MM, chart_pages
-from knitcore.formats.write.chart_key import (
-    GRID,
-    MARGIN_MM,
-    SMALL_MM,
-    ChartStyle,
-    RegionMark,
-    is_coloured,
-    shortened,
-    tinted,
-)
-from knitcore.formats.write.drawn_page import Label, Page, Photo, Rectangle, Shape
+from knitcore.formats.write.chart_drawing import chart_pages
+from knitcore.formats.write.chart_key import ChartStyle, RegionMark, is_coloured, shortened, tinted
+from knitcore.formats.write.drawn_page import Page
+from knitcore.formats.write.sheets.flow import Flow, numbered
 from knitcore.formats.write.written_pattern import written_sections
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.materials import Interval, Material
@@ -39,19 +27,9 @@ from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Along, Prediction, Source
 from knitcore.prediction.pure import CURL, CURLS
 
-TITLE_MM, HEADING_MM, BODY_MM = 9.0, 5.0, 3.2
-LINE = 1.45
-"""Distance of lines over the size of their type."""
-FOOT_MM = 16.0
-PHOTO_MM = (A4_MM[0] - 2 * MARGIN_MM, 100.0)
-MAX_PHOTO_BYTES, MAX_PHOTO_PIXELS = 4_000_000, 4096
 MAX_SECTIONS = 24
 """Rows of designs with more borders between regions are written without sections."""
 PULL_N_PER_MM = 0.05
-_FAINT = 16
-"""Largest difference of a colour channel (of 255) that still counts as a photo's background."""
-_EM = 0.5
-"""Mean width of a letter over the size of its type."""
 
 _ABBREVIATIONS = {
     "k": "knit",
@@ -124,7 +102,7 @@ def pattern_pages(
         If the photo is no PNG or too large, the material lacks a fabric that the chart needs, or
         the piece cannot be worked in the round.
     """
-    flow = _Flow()
+    flow = Flow()
     facts = _Facts.of(piece, material)
     flow.title(style.title or "Untitled")
     flow.text(f"{piece.shaped.stitches} stitches in {piece.chart.rows} rows; {facts.finished}.")
@@ -148,10 +126,7 @@ def pattern_pages(
     written = flow.pages()
     plain = replace(style, note="")  # printed above
     pages = [*written, *chart_pages(piece, plain, first=len(written) + 1)]
-    return tuple(
-        _footed(page, f"{style.title or 'Untitled'}, page {number} of {len(pages)}")
-        for number, page in enumerate(pages, start=1)
-    )
+    return numbered(pages, style.title or "Untitled")
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,130 +163,8 @@ class _Facts:
         return f"{self.size.width_mm / 10:.1f} × {self.size.height_mm / 10:.1f} cm at rest{most}"
 
 
-class _Flow:
-    """Text and pictures one below the other, on as many pages as they take."""
-
-    def __init__(self) -> None:
-        self._pages: list[list[Shape]] = [[]]
-        self._y = MARGIN_MM
-
-    def pages(self) -> list[Page]:
-        return [Page(*A4_MM, tuple(shapes)) for shapes in self._pages]
-
-    def title(self, text: str) -> None:
-        for line in _wrapped(text, TITLE_MM, A4_MM[0] - 2 * MARGIN_MM):
-            self._y += TITLE_MM
-            self.draw(Label(MARGIN_MM, self._y, line, TITLE_MM, bold=True))
-        self._y += 3.0
-
-    def heading(self, text: str) -> None:
-        """A heading, which stays with the lines below it."""
-        self._room(HEADING_MM * 2 + 3 * BODY_MM * LINE)
-        self._y += HEADING_MM * 1.6
-        self.draw(Label(MARGIN_MM, self._y, text, HEADING_MM, bold=True))
-        self._y += 1.5
-
-    def subheading(self, text: str) -> None:
-        self._room(4 * BODY_MM * LINE)
-        self._y += BODY_MM * 0.6
-        self.text(text, bold=True)
-
-    def text(
-        self, text: str, *, bold: bool = False, colour: str | None = None, bullet: bool = False
-    ) -> None:
-        """A paragraph; a box of a colour, or a bullet, in front of it if asked for."""
-        indent = 6.0 if colour else 3.0 if bullet else 0.0
-        for index, line in enumerate(_wrapped(text, BODY_MM, A4_MM[0] - 2 * MARGIN_MM - indent)):
-            self._room(BODY_MM * LINE)
-            self._y += BODY_MM * LINE
-            if colour and not index:
-                self._patch(colour)
-            if bullet and not index:
-                self.draw(Label(MARGIN_MM, self._y, "•", BODY_MM))
-            self.draw(Label(MARGIN_MM + indent, self._y, line, BODY_MM, bold=bold))
-
-    def row(
-        self,
-        cells: Sequence[str],
-        places: Sequence[float],
-        *,
-        bold: bool = False,
-        colour: str | None = None,
-    ) -> None:
-        """Cells of a table, each at its place; a box in front of them if a colour is given."""
-        self._room(BODY_MM * LINE)
-        self._y += BODY_MM * LINE
-        if colour:
-            self._patch(colour)
-            places = (places[0] + 6.0, *places[1:])
-        for text, place in zip(cells, places, strict=True):
-            self.draw(Label(MARGIN_MM + place, self._y, text, BODY_MM, bold=bold))
-
-    def photo(self, png: bytes, caption: str) -> None:
-        """A picture as large as its box allows, and a line below it."""
-        png, (width, height) = _photo(png)
-        scale = min(PHOTO_MM[0] / width, PHOTO_MM[1] / height)
-        self._y += 4.0
-        left = (A4_MM[0] - scale * width) / 2
-        self.draw(Photo(left, self._y, scale * width, scale * height, png))
-        self._y += scale * height + 4.0
-        self.draw(Label(A4_MM[0] / 2, self._y, caption, SMALL_MM, "middle"))
-
-    def draw(self, shape: Shape) -> None:
-        self._pages[-1].append(shape)
-
-    def _patch(self, colour: str) -> None:
-        self.draw(Rectangle(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
-
-    def _room(self, height: float) -> None:
-        if self._y + height > A4_MM[1] - FOOT_MM:
-            self._pages.append([])
-            self._y = MARGIN_MM
-
-
-def _wrapped(text: str, size: float, width: float) -> list[str]:
-    return textwrap.wrap(text, int(width / (_EM * size))) or [""]
-
-
-def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
-    """The picture on white paper without its empty edges, and its size in pixels."""
-    if len(png) > MAX_PHOTO_BYTES:
-        raise InputError(
-            "photo", f"it has {len(png)} bytes.", f"Send at most {MAX_PHOTO_BYTES:,} bytes."
-        )
-    try:
-        with Image.open(io.BytesIO(png), formats=["PNG"]) as image:
-            if max(image.size) > MAX_PHOTO_PIXELS:  # before any pixel is decoded
-                problem = f"it has {image.width}x{image.height} pixels."
-                raise InputError("photo", problem, f"Use at most {MAX_PHOTO_PIXELS} a side.")
-            flat = Image.new("RGBA", image.size, "white")
-            flat.alpha_composite(image.convert("RGBA"))
-    except InputError:
-        raise
-    except (Image.DecompressionBombError, OSError, SyntaxError, ValueError):
-        raise InputError("photo", "it is not a readable PNG.", "Send a PNG picture.") from None
-    shown = _without_empty_edges(flat.convert("RGB"))
-    buffer = io.BytesIO()
-    shown.save(buffer, "PNG")
-    return buffer.getvalue(), shown.size
-
-
-def _without_empty_edges(image: Image.Image) -> Image.Image:
-    """The part of a picture that differs from its corner, with a small margin."""
-    ground = Image.new("RGB", image.size, image.getpixel((0, 0)))
-    box = ImageChops.difference(image, ground).point(lambda value: 255 * (value > _FAINT)).getbbox()
-    if box is None:
-        return image
-    left, top, right, bottom = box
-    width, height = image.size
-    rim = round(0.03 * max(width, height))
-    return image.crop(
-        (max(left - rim, 0), max(top - rim, 0), min(right + rim, width), min(bottom + rim, height))
-    )
-
-
 def _materials(
-    flow: _Flow,
+    flow: Flow,
     piece: Piece,
     material: Material,
     yarn_facts: Sequence[str],
@@ -330,7 +183,7 @@ def _materials(
     flow.text("Needles of the size with which your swatch has the gauge below.")
 
 
-def _gauge(flow: _Flow, facts: _Facts, *, parts: bool) -> None:
+def _gauge(flow: Flow, facts: _Facts, *, parts: bool) -> None:
     flow.heading("Gauge and size")
     if facts.prediction is None and parts:
         flow.text("Each part has a gauge of its own: see Parts.")
@@ -368,7 +221,7 @@ def _known_parts(facts: _Facts, regions: Sequence[RegionMark]) -> list[tuple[Reg
     return [(region, cells) for region, cells in known if cells.any()]
 
 
-def _parts(flow: _Flow, facts: _Facts, shown: Sequence[tuple[RegionMark, Mask]]) -> None:
+def _parts(flow: Flow, facts: _Facts, shown: Sequence[tuple[RegionMark, Mask]]) -> None:
     """Each region: where it lies, its gauge, and its size at its widest row and highest column."""
     if not shown:
         return
@@ -402,7 +255,7 @@ def _breaks(piece: Piece, regions: Sequence[RegionMark]) -> list[int]:
     return inner if len(inner) <= MAX_SECTIONS else []
 
 
-def _abbreviations(flow: _Flow, lines: Sequence[str]) -> None:
+def _abbreviations(flow: Flow, lines: Sequence[str]) -> None:
     """List the abbreviations that the rows use."""
     words = {word for line in lines for word in re.findall(r"[A-Za-z]+\d?[a-z]*", line)}
     written = words | {re.sub(r"\d+$", "", word) for word in words}
@@ -415,7 +268,7 @@ def _abbreviations(flow: _Flow, lines: Sequence[str]) -> None:
 
 
 def _instructions(
-    flow: _Flow,
+    flow: Flow,
     piece: Piece,
     style: ChartStyle,
     opening: Sequence[str],
@@ -435,7 +288,7 @@ def _instructions(
             flow.text(re.sub(r"(?<=\d)-(?=\d)", "–", line))
 
 
-def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
+def _finishing(flow: Flow, facts: _Facts, style: ChartStyle) -> None:
     flow.heading("Finishing")
     flow.text("Bind off as loosely as the cloth stretches, and weave in the ends.")
     flow.text(
@@ -446,7 +299,7 @@ def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
         flow.text("In the round the width is the circumference.")
 
 
-def _evidence(flow: _Flow, facts: _Facts) -> None:
+def _evidence(flow: Flow, facts: _Facts) -> None:
     flow.heading("Where the numbers come from")
     prediction = facts.prediction
     source = None if prediction is None else prediction.provenance
@@ -458,8 +311,3 @@ def _evidence(flow: _Flow, facts: _Facts) -> None:
         "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",
     ):
         flow.text(sentence, bullet=True)
-
-
-def _footed(page: Page, text: str) -> Page:
-    foot = Label(A4_MM[0] / 2, A4_MM[1] - 6.0, text, SMALL_MM, "middle")
-    return replace(page, shapes=(*page.shapes, foot))

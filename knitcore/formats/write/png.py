@@ -11,6 +11,7 @@ import json
 import numpy as np
 from PIL import Image, PngImagePlugin
 
+from knitcore.base.arrays import Codes
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.piece import Piece
@@ -36,6 +37,13 @@ def write_png(chart: StitchChart | Piece) -> bytes:
     purl = chart.chart.purl if isinstance(chart, Piece) else chart.purl
     image = Image.fromarray(np.where(purl[::-1], 0, 255).astype(np.uint8)).convert("1")
     image.save(buffer, format="PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def write_grey(grey: Codes) -> bytes:
+    """A picture of grey levels, uint8 (rows, columns), its first row at the top."""
+    buffer = io.BytesIO()
+    Image.fromarray(grey).save(buffer, format="PNG", optimize=True)
     return buffer.getvalue()
 
 

@@ -389,3 +389,31 @@ def test_the_designer_chooses_the_symbols_of_the_chart() -> None:
     assert drawn(Symbols.DOTS) == (2, 0)
     assert drawn(Symbols.DASHES) == (0, 2)
     assert drawn(Symbols.JAPANESE) == (0, 5)
+
+
+@pytest.mark.parametrize("machine", ["swg091n2", "kniterate"])
+def test_a_program_begins_at_any_row_after_a_jam(machine: str) -> None:
+    chart = StitchChart.parse("KPKKPK\nPPKPKK\nKKPPKP\nKPKPKK")
+    layout = DesignLayout(outline="..xxxx\n.xxxxx\nxxxxxx\nxxxxx.", machine=machine)
+    options = ExportOptions(layout=layout, from_row=3)
+    file = export_chart(chart, ExportKind.KNITOUT, ACRYLIC, options)
+    rest = DesignLayout(outline=".xxxx\nxxxxx", machine=machine)
+    upper = StitchChart(chart.purl[2:, 1:])
+    again = export_chart(upper, ExportKind.KNITOUT, ACRYLIC, ExportOptions(layout=rest))
+    assert file.content == again.content
+    assert any("hold row 2 on waste yarn" in note for note in file.notes)
+    with pytest.raises(InputError, match="no row 5"):
+        export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(layout=layout, from_row=5))
+
+
+@pytest.mark.parametrize("kind", ["hand-plan-text", "ayab", "punch-card-text"])
+def test_files_for_home_machines_follow_the_machine_of_the_design(kind: str) -> None:
+    chart = StitchChart.of_fabric("rib", rows=4, columns=8)
+    usual = export_chart(chart, kind, ACRYLIC)
+    assert usual.notes
+    ribber = DesignLayout(machine="brother-ribber")
+    own = export_chart(chart, kind, ACRYLIC, ExportOptions(layout=ribber))
+    assert (own.content != usual.content) == (kind != "ayab")
+    industrial = ExportOptions(layout=DesignLayout(machine="kniterate"))
+    with pytest.raises(InputError, match="Kniterate"):
+        export_chart(chart, kind, ACRYLIC, industrial)

@@ -14,7 +14,8 @@ from knitcore.formats.read.written_reader import read_rows
 from knitcore.formats.write.chart_key import ChartStyle, RegionMark
 from knitcore.formats.write.drawn_page import Label, Page, Photo, to_long_svg
 from knitcore.formats.write.export import ExportKind, ExportOptions, export_chart
-from knitcore.formats.write.pattern import MAX_PHOTO_PIXELS, pattern_pages
+from knitcore.formats.write.pattern import pattern_pages
+from knitcore.formats.write.sheets.flow import MAX_PHOTO_PIXELS
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.piece import Piece
 from knitcore.garment.shaped import ShapedChart

@@ -1,0 +1,1 @@
+"""Home machines: plans by the row, pictures for AYAB and punch cards."""

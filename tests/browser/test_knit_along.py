@@ -1,0 +1,71 @@
+"""Knitting along, row by row, on a phone."""
+
+from playwright.sync_api import Page, expect
+
+from tests.browser import axe
+from tests.browser.conftest import flat, open_small_chart, wait_for_numbers
+
+CHART = "\n".join(["KKPPKKPPKKPP", "PPKKPPKKPPKK"] * 5)
+PHONE = {"width": 390, "height": 844}
+
+
+def opened(page: Page) -> Page:
+    page.keyboard.press("Shift+K")
+    expect(page.locator(".along-row")).not_to_be_empty()  # the rows have come
+    return page
+
+
+def test_the_row_at_hand_is_large_and_kept(visitor: Page, service: str) -> None:
+    page = opened(open_small_chart(flat(visitor), service, CHART))
+    page.set_viewport_size(PHONE)
+    heading, words = page.locator(".along-row"), page.locator(".along-words")
+    expect(heading).to_have_text("Before row 1")
+    expect(words).to_contain_text("Cast on 12 sts")
+    page.locator("#along-next").click()
+    expect(heading).to_have_text("Row 1 of 10")
+    expect(page.locator(".along-repeat")).to_have_text("Repeat 1 of 5, row 1 of 2")
+    for key, row in (("PageDown", 2), ("ArrowRight", 3), ("PageUp", 2), ("End", None), ("Home", 0)):
+        page.keyboard.press(key)
+        expected = {None: "After the last row", 0: "Before row 1"}.get(row, f"Row {row} of 10")
+        expect(heading).to_have_text(expected)
+    page.get_by_label("Go to row").fill("7")
+    page.keyboard.press("Tab")
+    expect(heading).to_have_text("Row 7 of 10")
+    page.get_by_label("Count up").click()
+    assert axe.violations_in_both_themes(page, "#along-dialog") == []
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+    page.locator("#along-dialog select").select_option("brother-ribber")
+    expect(heading).to_have_text("Before row 1")  # another way has a place of its own
+    expect(words).to_contain_text("ribber")
+    page.locator("#along-next").click()
+    expect(page.locator(".along-side")).to_contain_text("Carriage at the right")
+    page.locator("#along-dialog select").select_option("flat")
+    expect(heading).to_have_text("Row 7 of 10")
+
+    page.reload()
+    wait_for_numbers(page)
+    opened(page)
+    expect(heading).to_have_text("Row 7 of 10")
+    expect(page.get_by_label("Counted")).to_have_text("1")
+
+    page.route("**/api/v1/**", lambda route: route.abort())  # the service is away
+    page.keyboard.press("Escape")
+    page.keyboard.press("Shift+K")
+    expect(heading).to_have_text("Row 7 of 10")
+    page.locator("#along-next").click()
+    expect(heading).to_have_text("Row 8 of 10")
+
+
+def test_a_finger_turns_the_rows(visitor: Page, service: str) -> None:
+    page = opened(open_small_chart(flat(visitor), service, CHART))
+    swipe = """([from, to]) => {
+        const row = document.querySelector(".along-reading");
+        const at = (type, clientX) => row.dispatchEvent(
+            new PointerEvent(type, {pointerType: "touch", clientX, clientY: 200, bubbles: true}));
+        at("pointerdown", from);
+        at("pointerup", to);
+    }"""
+    for way, row in (((300, 100), 1), ((300, 100), 2), ((300, 280), 2), ((100, 300), 1)):
+        page.evaluate(swipe, list(way))
+        expect(page.locator(".along-row")).to_have_text(f"Row {row} of 10")
