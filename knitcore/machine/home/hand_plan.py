@@ -269,7 +269,7 @@ class _Planner:
         return tasks
 
     def _is_cut(self, row: int, place: int, start: int) -> bool:
-        """Whether a ladder from ``start`` must be latched up before a row."""
+        """Say whether a ladder from ``start`` must be latched up before a row."""
         if not self._other[row, place] or row - start >= MAX_LADDER:
             return True
         if self._toward[row] != self._toward[row - 1]:

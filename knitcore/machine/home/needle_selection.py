@@ -32,7 +32,7 @@ from knitcore.machine.profile import MachineProfile
 
 
 class Selected(StrEnum):
-    """What the selected needles stand for."""
+    """The meaning of selected needles."""
 
     COLOURS = "colours"
     HAND = "hand"

@@ -1,4 +1,4 @@
-"""What a plan for a home machine consists of: rows, the work by hand between them, and its text."""
+"""Parts of a plan for a home machine: rows, the work by hand between them, and its text."""
 
 from __future__ import annotations
 
