@@ -34,12 +34,12 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.garment.regions import LOOP_LENGTH_LOG_SD
 from knitcore.machine.profile import MachineProfile
 from knitcore.machine.program_passes import Link, PulledLink, pulls_of, read_passes
 from knitcore.machine.transfers import LoopMove, TransferPlan, plan_transfers
 from knitcore.materials import Interval, Material
 from knitcore.materials.estimate.without_tester import COUNTED_TEX
+from knitcore.materials.yarn_per_stitch import LOOP_LENGTH_LOG_SD
 from knitcore.yarn.library.yarns import yarn_friction
 
 TENACITY_AND_STRETCH = {

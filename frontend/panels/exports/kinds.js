@@ -67,7 +67,13 @@ export const KINDS = [
     ["knitspeak", "KnitSpeak", "for Stitch Maps and other tools; rectangular charts only", ["worked"], true],
   ]),
   ...kinds("For a machine", [
-    ["knitout", "Knitout", "for your machine; knitted on a virtual one first", ["machine", "finish", "from", "tex"], true],
+    [
+      "knitout",
+      "Knitout",
+      "for your machine; knitted on a virtual one first",
+      ["machine", "finish", "from", "tex"],
+      true,
+    ],
   ]),
   ...kinds("For a home machine", [
     ["hand-plan", "Plan by the row", "PDF: what to latch up, transfer or turn, and on which needles", HOME],
