@@ -117,7 +117,7 @@ class LoopLength:
     like: tuple[Fabric, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class YarnPerStitch(Result):
     """Yarn in the stitches of a chart.
 

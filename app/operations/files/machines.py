@@ -56,7 +56,7 @@ class ProgramRequest(RequestModel):
 
 
 class ProblemResult(ResultModel):
-    """What a machine cannot do with a program, or does badly."""
+    """Something that a machine cannot do with a program, or does badly."""
 
     line: int
     subject: str

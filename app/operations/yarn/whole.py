@@ -99,13 +99,13 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
     chart = to_chart(request.chart)
     request = request.with_row_lengths(context)
     used = request.yarn(chart, context)
-    asked = {"flat", "convention"}
+    deciding = {"flat", "convention"}
     if request.loop_lengths_mm is not None:
-        asked.add("loop_lengths_mm")
+        deciding.add("loop_lengths_mm")
     inputs: dict[str, Any] = {
         "chart": chart.text,
         "used": asdict(used),
-        "asked": request.model_dump(mode="json", include=asked),
+        "asked": request.model_dump(mode="json", include=deciding),
     }
     rows = len(request.loop_lengths_mm or [])  # of the chart, or of its repeat
     lengths = lengths_of(request, used, rows or chart.rows, chart.columns)

@@ -14,6 +14,7 @@ const design = (chart, more = {}) => ({
   name: "Cuff",
   material: "acrylic",
   note: "",
+  machine: null,
   outline: null,
   regions: [],
   repeats: [],
