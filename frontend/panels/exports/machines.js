@@ -17,7 +17,7 @@ const FILE = "file";
 /**
  * Machines to choose from, by what a design keeps of them.
  *
- * @param {Machines["machines"]} machines
+ * @param {Pick<Machines["machines"][number], "identifier" | "name" | "reads_programs">[]} machines
  * @param {string | null} chosen what the design keeps: a name, or the text of a profile
  * @returns {{options: Record<string, string>, value: string}}
  */

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { choices } from "../../../panels/exports/machines.js";
 
+/** @param {string} identifier @param {string} name */
 const machine = (identifier, name, reads_programs = true) => ({ identifier, name, reads_programs });
 const MACHINES = [machine("swg091n2", "Shima"), machine("kniterate", "Kniterate"), machine("ayab", "AYAB", false)];
 
