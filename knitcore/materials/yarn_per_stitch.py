@@ -148,7 +148,7 @@ class YarnPerStitch(Result):
 
     @property
     def rows_are_equal(self) -> bool:
-        """Whether all rows have one loop length."""
+        """True if all rows have one loop length."""
         return float(np.ptp(self.row_shares)) <= SAME_LENGTH
 
     @property
