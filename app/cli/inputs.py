@@ -91,7 +91,7 @@ class Inputs:
             If a value is wrong; it names the option.
         """
         fields: dict[str, Any] = {}
-        for made in self.inputs:
+        for made in sorted(self.inputs, key=lambda made: made.name != "chart"):  # a design's first
             fields |= made.fields(given)
         try:
             return self.model.model_validate(fields | dict(more))

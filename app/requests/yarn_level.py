@@ -33,8 +33,6 @@ from .base import Ends, Positive, RequestModel, ResultModel
 from .charts import MaterialName, RepeatInput, to_chart, to_repeat
 from .faults import with_others
 
-_SAME_LENGTH = 1e-9
-"""Part of a loop length by which rows may differ and still count as equal."""
 LoopLengths = list[Annotated[list[Positive], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]]
 
 
@@ -115,10 +113,10 @@ class RowLengthsRequest(StitchRequest):
             return self
         repeat = to_chart(self.chart).repeat()
         mean = self.yarn(repeat, context).loop_length_mm
-        rows = yarn_per_stitch(repeat, context.material(self.material), periodic=True).rows_mm
-        if np.ptp(rows) <= _SAME_LENGTH * mean:
+        own = yarn_per_stitch(repeat, context.material(self.material), periodic=True)
+        if own.rows_are_equal:
             return self.model_copy(update={"yarn_per_stitch": False})
-        lengths = [[length] for length in (mean * rows / rows.mean()).tolist()]
+        lengths = [[mean * share] for share in own.row_shares.tolist()]
         update = {"yarn_per_stitch": False, "chart": repeat.text, "loop_length_mm": None}
         return self.model_copy(update=update | {"loop_lengths_mm": lengths})
 

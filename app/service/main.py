@@ -62,7 +62,7 @@ THREADS = 8
 """Threads of requests. Python runs one at a time: with FastAPI's 40, the event loop could wait for
 all of them each time it returns from reading or sending."""
 THREADS_EACH = 2
-"""Of these, the most that one of several users takes at once."""
+"""Most of these threads that one of several users takes at once."""
 SPARE_THREADS = 2
 """Threads of FastAPI for what takes none of these in turn, such as light work, one at a time."""
 

@@ -66,28 +66,28 @@ class DialSetting:
     Attributes
     ----------
     number : that the machine can be set to.
-    exact, interval : the number before rounding, with its 90 % interval.
-    loop_length_mm, loop_interval_mm : what that number gives, with its 90 % interval.
+    exact, exact_interval : the number before rounding, with its 90 % interval.
+    loop_length_mm, loop_length_interval_mm : what that number gives, with its 90 % interval.
     guessed : whether no swatch stands behind it.
     """
 
     number: float
     exact: float
-    interval: Interval
+    exact_interval: Interval
     loop_length_mm: float
-    loop_interval_mm: Interval
+    loop_length_interval_mm: Interval
     guessed: bool
 
     def to_dict(self) -> dict[str, Any]:
         """Collect the figures by name."""
         return {
             **vars(self),
-            "interval": list(self.interval),
-            "loop_interval_mm": list(self.loop_interval_mm),
+            "exact_interval": list(self.exact_interval),
+            "loop_length_interval_mm": list(self.loop_length_interval_mm),
         }
 
     def __str__(self) -> str:
-        low, high = self.loop_interval_mm
+        low, high = self.loop_length_interval_mm
         basis = "a guess without swatches" if self.guessed else "from swatches"
         return (
             f"stitch number {self.number:g} for loops of {self.loop_length_mm:.1f} mm "

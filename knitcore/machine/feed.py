@@ -42,7 +42,7 @@ class HookFeed:
     """Yarn that a hook holds; it comes from the right."""
 
     needs_anchor = True
-    """Whether yarn comes leftwards only, so that a course rightwards must tie it first."""
+    """True where yarn comes leftwards only, so that a course rightwards must tie it first."""
     base_loops = 0
     """Loops that a needle holds before the cast-on."""
 

@@ -206,7 +206,7 @@ class MachineProfile:
 
     @property
     def reads_programs(self) -> bool:
-        """Whether it knits from a program; by hand otherwise."""
+        """True if it knits from a program, and not by hand."""
         return self.dialect is not Dialect.HAND
 
     @property

@@ -20,7 +20,7 @@ _IN = {"in", "inhook", "out", "outhook", "releasehook"}
 
 @dataclass(frozen=True)
 class ProgramProblem:
-    """What a machine cannot do with a program, or does badly.
+    """Something that a machine cannot do with a program, or does badly.
 
     Attributes
     ----------

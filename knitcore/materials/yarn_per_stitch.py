@@ -28,6 +28,8 @@ from knitcore.materials.law_uncertainty import Interval, log_interval
 from knitcore.materials.material import Material
 from knitcore.materials.printed_figures import read_packaged
 
+SAME_LENGTH = 1e-9
+"""Part of a loop length by which rows may differ and still count as equal."""
 LOOP_LENGTH_LOG_SD = 0.05
 """Standard deviation of the logarithm of a loop length: the median of the 37 the paper prints."""
 
@@ -138,6 +140,16 @@ class YarnPerStitch(Result):
     def rows_mm(self) -> Array:
         """(rows,) loop length of each row, bottom first."""
         return np.asarray(self.stitch_mm.mean(axis=1))
+
+    @property
+    def row_shares(self) -> Array:
+        """(rows,) loop length of each row over the mean of the rows."""
+        return np.asarray(self.rows_mm / self.rows_mm.mean())
+
+    @property
+    def rows_are_equal(self) -> bool:
+        """True if all rows have one loop length."""
+        return float(np.ptp(self.row_shares)) <= SAME_LENGTH
 
     @property
     def mean_interval_mm(self) -> Interval:

@@ -39,9 +39,9 @@ class DialResult(IntervalResult):
 
     number: float
     exact: float = Field(description="Before rounding to what the machine can be set to.")
-    interval: Ends
+    exact_interval: Ends
     loop_length_mm: float = Field(description="What that number gives.")
-    loop_interval_mm: Ends
+    loop_length_interval_mm: Ends
     guessed: bool = Field(description="Whether no swatch stands behind it.")
     file: str = Field(description="The swatches as a file to keep, JSON.")
 
@@ -96,7 +96,7 @@ def _command(request: DialRequest, context: Context, out: Path | None) -> DialRe
 
 
 def _lines(result: DialResult) -> list[str]:
-    low, high = result.loop_interval_mm
+    low, high = result.loop_length_interval_mm
     return [
         f"stitch number  {result.number:g}",
         f"loop length    {result.loop_length_mm:.1f} mm ({low:.1f} to {high:.1f})",

@@ -55,7 +55,7 @@ export function create(studio, { view }) {
     "RS",
     (value) => (chosen.first_side = value),
   );
-  const home = selectField({}, HOME_MACHINES);
+  const home = selectField({ class: "text" }, HOME_MACHINES);
   const from = numberField({ min: "1", step: "1", value: "1", "aria-label": "From row" });
   const note = h("p", { class: "muted" });
   /** @type {Record<Option, HTMLElement>} */

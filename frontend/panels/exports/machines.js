@@ -57,7 +57,7 @@ export function machineField(studio) {
   });
   function show() {
     const { options, value } = choices(machines, studio.machine.value);
-    const field = selectField({ id: "export-machine", "aria-label": "Machine" }, options);
+    const field = selectField({ class: "text", id: "export-machine", "aria-label": "Machine" }, options);
     field.value = value;
     field.addEventListener("change", () => {
       const { value: picked } = field;

@@ -58,7 +58,7 @@ def bound_off_by(loops: Iterable[Loop]) -> set[Loop]:
     """Loops that bind off: the links of each chain, and the tag that is knitted onto its last one.
 
     A link is pulled through the one before it, which was moved to its needle. The last link of a
-    chain is a stitch if its yarn knits on along the course.
+    chain is a stitch if its yarn knits on along the course, or another yarn through it.
     """
     links: set[Loop] = set()
     for loop in loops:
@@ -68,7 +68,7 @@ def bound_off_by(loops: Iterable[Loop]) -> set[Loop]:
             continue
         elif (before := _neighbour(loop, "before")) in links and before in loop.parents:
             tag = [loop, *_following(loop)]
-            if len({(o.bed, o.needle) for o in tag}) == 1:
+            if len({(o.bed, o.needle) for o in tag}) == 1 and tag[-1].child is None:
                 links.update(tag)
     return links
 

@@ -144,7 +144,7 @@ class _Planner:
         return replace(plan, notes=self._notes(plan))
 
     def _best_start(self) -> bool:
-        """Whether row 1 begins at the chart's left edge: so that few edges need a separate strand.
+        """Choose whether row 1 begins at the left edge, so that few edges need a separate strand.
 
         Where both are as good, the carriage starts at the knitter's right.
         """
@@ -157,7 +157,7 @@ class _Planner:
         return bool(right) if strands[0] == strands[1] else strands[1] < strands[0]
 
     def _from_left(self, row: int) -> bool:
-        """Whether a row begins at the chart's left edge."""
+        """Return whether a row begins at the chart's left edge."""
         return self._starts_left == (row % 2 == 0)
 
     def _leftwards(self, row: int) -> bool:

@@ -33,6 +33,7 @@ from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.materials import Interval, Material, material
 from knitcore.prediction.prediction import Prediction
 from knitcore.yarn.library.store import stored_charts
+from scripts.any_machine import OTHERS, SIZES, difference
 from tests.app.command_line import run
 from tests.app.rest import post, solid
 
@@ -272,7 +273,8 @@ def test_a_gauge_counts_alike_over_rest_and_on_the_command_line(
     served = post(client, name, GAUGED | more)
     gauge = "--stitches-per-10-cm", 20, "--rows-per-10-cm", 30
     shown = run(name, "garter", "--size", "12x12", "--material", "acrylic", *options, *gauge)
-    assert served | {"seconds": 0} == shown | {"seconds": 0}
+    sizes, others, where = difference(served, shown)
+    assert (sizes <= SIZES, others <= OTHERS) == (True, True), where
 
 
 def test_the_border_of_a_counted_piece_is_said_to_be_uncounted(client: TestClient) -> None:

@@ -17,7 +17,7 @@ def test_two_swatches_give_the_line_between_them() -> None:
     setting = dial.setting(10.4)
     assert setting.number == 6
     assert not setting.guessed
-    low, high = setting.loop_interval_mm
+    low, high = setting.loop_length_interval_mm
     assert low < 10.4 < high
 
 

@@ -48,6 +48,13 @@ def test_a_carrier_stays_with_its_block() -> None:
     assert program.transfers == 0
 
 
+def test_a_course_of_one_stitch_ends_a_chain_and_carries_another_yarn() -> None:
+    shaped = ShapedChart.parse("KKK\nKKK\nKKK", "..x\n..x\nxxx")
+    yarn_of = np.array([[0, 0, 0], [0, 0, 0], [0, 0, 1]])
+    piece = Piece(shaped, (MAIN_YARN, PieceYarn("blue", "#0000ff")), yarn_of)
+    assert knitted_chart(verified(piece).text).piece == piece
+
+
 def test_too_many_blocks_of_colour_are_refused() -> None:
     yarn_of = np.arange(12)[None, :] % 2
     chart = ShapedChart.rectangle(StitchChart.of_fabric("stockinette", rows=1, columns=12))
