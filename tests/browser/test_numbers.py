@@ -17,7 +17,7 @@ from tests.browser.page import Chart, drag, kept_chart
 
 NUMBER = r"−?\d+(\.\d+)?"
 LEARNED = "How sure? Estimated from simulations"
-INTERVAL = rf"{NUMBER} – {NUMBER}"
+INTERVAL = rf"{NUMBER}( – | to ){NUMBER}"
 WAISTED = "\n".join(["x" * 12] * 3 + ["..xxxxxxxx.."] * 4 + ["x" * 12] * 3)
 RIBBED = "\n".join(["KPKPKPKKKKKK"] * 5 + ["KKKKKKKPKPKP"] * 5)
 LEFT = {
