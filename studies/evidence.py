@@ -32,6 +32,7 @@ from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure
 from scripts.refit_laws import STRESSES, carried
 from scripts.training import learned as training
+from studies import other_stitches
 from studies.against_knitted import errors, rms
 from studies.claims import Basis, Claim
 from studies.figures import evidence as figures
@@ -361,6 +362,48 @@ which uneven ribs folded as deep as even ones, missed 29 other swatches of this 
 """
 
 
+def lace_and_cables(folder: Path, claims: list[Claim]) -> str:
+    """Relaxed sizes of lace and cables that others knitted."""
+    swatches = other_stitches.compared(folder, material("lace-acrylic"))
+    judged = swatches.judged
+    sd = np.sqrt((judged.missed**2).mean(axis=0))
+    inside = np.abs(judged.missed) <= Z_SCORE * sd
+    kinds = {"lace": swatches.lace, "cables": ~swatches.lace}
+    shown = {
+        "chosen without the texture that is judged": judged.missed,
+        **{
+            name: swatches.missed(other_stitches.CANDIDATES[name]) for name in other_stitches.SIMPLE
+        },
+    }
+    rows = [[name, *(factor(missed[these]) for these in kinds.values())]
+            for name, missed in shown.items()]  # fmt: skip
+    for kind, these in kinds.items():
+        of_kind = {name: f"{np.exp(rms(missed[these])):.3f}" for name, missed in shown.items()}
+        claims.append(Claim(
+            f"relaxed size of {kind}", f"{these.sum()} swatches of one yarn", Basis.NESTED,
+            f"× {of_kind['chosen without the texture that is judged']}",
+            f"as stockinette × {of_kind['all like stockinette']}, "
+            f"offset × {of_kind['offset of its kind']}",
+            f"{inside[these].mean():.0%}", "within the interval",
+        ))  # fmt: skip
+    ranked = "; ".join(
+        f"{kind} {ranks((judged.missed + swatches.true)[these], swatches.true[these])}"
+        for kind, these in kinds.items()
+    )
+    return f"""\
+## Lace and cables
+
+{len(swatches.lace)} swatches of the same yarn (`python -m studies.other_stitches FOLDER`). Sizes
+follow from the mixture of knits and purls and two effects, of yarn overs and of pairs of stitches
+that cross. Rms factors, both, width and height:
+
+{table("| | lace | cables |", rows)}
+
+Rank correlation: {ranked}. *Not shown*: slips and tucks, whose effects are stated guesses; stretch;
+other yarns.
+"""
+
+
 def yarn_in_stitches(folder: Path, claims: list[Claim]) -> str:
     """Masses of swatches knitted by others, by their knits and purls."""
     plain, others = weighed(folder)
@@ -637,6 +680,7 @@ def main() -> None:
         shear(folder / "graded", claims),
         gradings(folder / "graded", claims),
         relaxed_sizes(folder / "knitdb", claims),
+        lace_and_cables(folder, claims),
         yarn_in_stitches(folder, claims),
         mixed_charts(claims),
         yarn_models(claims),

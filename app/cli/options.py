@@ -16,6 +16,8 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.patterns import PATTERNS
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_kinds import BY_CODE
+from knitcore.chart.symbol_chart import CODE, SymbolChart
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -166,6 +168,39 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     if named is not None and not is_repeat:
         raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
     return cloth if named is None else cloth.repeat()
+
+
+def stitches_in(file: Path) -> SymbolChart | None:
+    """The chart of a file if it has other stitches than knit and purl.
+
+    Raises
+    ------
+    InputError
+        If it has, and does not balance.
+    """
+    from knitcore.formats.read.chart_files import has_other_stitches, read_noted_stitches
+
+    if not has_other_stitches(file):
+        return None
+    stitches, notes = read_noted_stitches(file)
+    show_notes(notes)
+    return stitches if isinstance(stitches, SymbolChart) else SymbolChart.of(stitches)
+
+
+def stitches_of(chart: str) -> SymbolChart | None:
+    """A repeat in one line with other stitches than knit and purl; rows end with ``;``.
+
+    Raises
+    ------
+    InputError
+        If it does not balance.
+    """
+    codes = CODE.findall(chart.replace(";", ""))
+    known = all(code in BY_CODE or code in STITCHES for code in codes)
+    is_name = _names_file(chart) or _chart_of_name(chart) is not None
+    if is_name or not known or set(chart) <= STITCHES | SEPARATORS:
+        return None
+    return SymbolChart.parse(chart)
 
 
 def show_notes(notes: Iterable[str]) -> None:

@@ -6,13 +6,14 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Laws, Material, load_library
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 from ..context import Context
 from .base import UNIT, RequestModel, ResultModel
-from .charts import ChartInput, MaterialName, to_chart
+from .charts import AnyChartInput, ChartInput, MaterialName, to_chart, to_stitches
 
 
 class LawsRequest(RequestModel):
@@ -171,3 +172,13 @@ def law_fields(law: ConstitutiveLaw, *models: type[ResultModel]) -> dict[str, fl
     """Return the constants of a law that models have fields for, under these fields' names."""
     names = (name for model in models for name in model.model_fields)
     return {name: getattr(law, name.removesuffix(UNIT)) for name in names}
+
+
+class StitchesRequest(GaugedRequest):
+    """A chart of any stitches, of a material, and how somebody knits it."""
+
+    chart: AnyChartInput
+
+    def stitches(self, context: Context) -> tuple[StitchChart | SymbolChart, Material]:
+        """Look up the chart and the material that the request names."""
+        return to_stitches(self.chart), context.material(self.material)

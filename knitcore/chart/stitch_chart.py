@@ -363,5 +363,11 @@ def as_chart(chart: StitchChart | str) -> StitchChart:
         return chart
     remedy = "Give a StitchChart, rows of K and P such as 'KP/PK', or a fabric such as 'garter'."
     check_kind("chart", chart, str, remedy)
-    name = chart.strip().lower()
-    return StitchChart.of_fabric(name) if name in tuple(Fabric) else StitchChart.parse(chart)
+    if is_name_of_fabric(chart):
+        return StitchChart.of_fabric(chart.strip().lower())
+    return StitchChart.parse(chart)
+
+
+def is_name_of_fabric(text: str) -> bool:
+    """Say whether a text is the name of a pure fabric."""
+    return text.strip().lower() in tuple(Fabric)

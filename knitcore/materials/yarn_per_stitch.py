@@ -24,12 +24,16 @@ from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.phases import stitch_quarters
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_kinds import YarnAct
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials.law_uncertainty import Interval, log_interval
 from knitcore.materials.material import Material
 from knitcore.materials.printed_figures import read_packaged
 
 SAME_LENGTH = 1e-9
 """Part of a loop length by which rows may differ and still count as equal."""
+YARN_OF_TUCK, YARN_OF_FLOAT = 0.75, 0.27
+"""Yarn in a tuck, and in the float past a slipped stitch, over that of a knit: stated guesses."""
 LOOP_LENGTH_LOG_SD = 0.05
 """Standard deviation of the logarithm of a loop length: the median of the 37 the paper prints."""
 
@@ -168,6 +172,39 @@ def loop_length(material: Material, fabric: Fabric) -> LoopLength:
         If the material has no loop length at all.
     """
     return _loop_length(_own_lengths(material), material, fabric)
+
+
+def has_loop_length(material: Material) -> bool:
+    """Say whether the yarn in its stitches is known."""
+    return bool(_own_lengths(material))
+
+
+def mean_yarn(chart: StitchChart | SymbolChart, material: Material) -> tuple[float, Interval]:
+    """Yarn in the mean stitch of a chart, mm, with its 90 % interval.
+
+    A yarn over takes as much as a knit, a tuck and the float of a slipped stitch less
+    (:data:`YARN_OF_TUCK`, :data:`YARN_OF_FLOAT`).
+
+    Raises
+    ------
+    InputError
+        If the material has no loop length.
+
+    Examples
+    --------
+    >>> from knitcore.materials import material
+    >>> round(mean_yarn(SymbolChart.parse("VK;KK"), material("acrylic"))[0], 2)
+    9.22
+    """
+    plain = chart if isinstance(chart, StitchChart) else chart.plain
+    used = yarn_per_stitch(plain, material)
+    share = 1.0
+    if not isinstance(chart, StitchChart):
+        graph = chart.graph
+        share -= (1 - YARN_OF_FLOAT) * float((graph.act == YarnAct.MISS).mean())
+        tucks = (graph.act == YarnAct.OVER) & (np.diff(graph.first, axis=1) > 0)
+        share -= (1 - YARN_OF_TUCK) * float(tucks.mean())
+    return share * used.mean_mm, log_interval(share * used.mean_mm, used.log_sd)
 
 
 def yarn_per_stitch(

@@ -12,6 +12,7 @@ from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.prediction.predict import predict
@@ -81,7 +82,7 @@ def increasing(stress_n_per_mm: ArrayLike) -> Array:
 
 
 def curve(
-    chart: StitchChart | str,
+    chart: StitchChart | SymbolChart | str,
     material: Material | str,
     direction: Direction | str,
     stress_n_per_mm: ArrayLike = DEFAULT_STRESS_N_PER_MM,

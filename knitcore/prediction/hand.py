@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material
@@ -66,7 +67,7 @@ class HandPull:
 
 
 def hand_pulls(
-    chart: StitchChart, material: Material, prediction: Prediction
+    chart: StitchChart | SymbolChart, material: Material, prediction: Prediction
 ) -> tuple[HandPull, ...]:
     """Tell how far a chart stretches at a light, a usual and a firm pull.
 
@@ -75,7 +76,9 @@ def hand_pulls(
     chart, material : of the prediction.
     """
     counted = None
-    if not prediction.size_is_known and not is_large(chart):
+    if not prediction.size_is_known and not is_large(
+        chart if isinstance(chart, StitchChart) else chart.plain
+    ):
         size = RelaxedSize(prediction.relaxed_course_mm, prediction.relaxed_wale_mm)
         counted = predict(chart, material, size)
     along = {

@@ -10,7 +10,10 @@
    the shares of a chart's stitches, so one stitch more or less changes little.
 4. A repeat of more than 16 stitches a side is predicted patch by patch
    (:mod:`knitcore.prediction.patches`).
-5. A known size replaces the predicted one and narrows the intervals of the stretch (*learned with
+5. Other stitches (lace, cables, slips, tucks) change the size of the chart's knits and purls by
+   their effects on knitted swatches, and widen its other intervals
+   (:mod:`knitcore.prediction.stitch_effects`).
+6. A known size replaces the predicted one and narrows the intervals of the stretch (*learned with
    known size*).
 
 Measured materials do not look sweeps up: the packaged ones are of one of several shapes that a
@@ -19,7 +22,8 @@ repeat may take, and no nearer to another of its shapes than the learned predict
 
 from knitcore.base.kinds import check_kind
 from knitcore.chart.phases import pure_fabric
-from knitcore.chart.stitch_chart import StitchChart, as_chart
+from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches
 from knitcore.materials import Material, as_material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import SweptChart, packaged_model
@@ -28,10 +32,11 @@ from knitcore.prediction.patches import Patches, in_patches, is_large
 from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.pure import predict_pure
 from knitcore.prediction.size import RelaxedSize, check_size
+from knitcore.prediction.stitch_effects import with_other_stitches
 
 
 def predict(
-    chart: StitchChart | str,
+    chart: StitchChart | SymbolChart | str,
     material: Material | str,
     size: RelaxedSize | None = None,
     swept: SweptChart | None = None,
@@ -41,7 +46,7 @@ def predict(
     Parameters
     ----------
     chart : a repeat, or a swatch that may cut its last repeat off; or its text, or the name of a
-        pure fabric.
+        pure fabric. It may have lace, cables, slipped and tucked stitches.
     material : a yarn at one setting, or its identifier.
     size : relaxed size of the chart's mean stitch, if known.
     swept : yarn-level sweep of the chart's repeat (:mod:`knitcore.prediction.swept`), if any.
@@ -62,7 +67,11 @@ def predict(
     >>> predict("KKPP", "acrylic:simulation").provenance
     <Source.SWEPT: 'swept'>
     """
-    return patches_of(as_chart(chart), as_material(material), size, swept).together()
+    stitches, of = as_stitches(chart), as_material(material)
+    if isinstance(stitches, StitchChart):
+        return patches_of(stitches, of, size, swept).together()
+    plain = patches_of(stitches.plain, of, size, swept).together()
+    return with_other_stitches(plain, stitches, of, size_is_known=size is not None)
 
 
 def patches_of(

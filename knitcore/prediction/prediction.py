@@ -31,6 +31,7 @@ class Source(StrEnum):
     SWEPT = "swept"
     LEARNED = "learned"
     LEARNED_OF_SIZE = "learned with known size"
+    OTHER_STITCHES = "learned with other stitches"
 
 
 @dataclass(frozen=True, eq=False)

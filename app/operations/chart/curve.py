@@ -15,14 +15,14 @@ from knitcore.prediction.curve import curve as chart_curve
 
 from ...context import Context
 from ...requests.base import EndsOfList, Floats, IntervalResult
-from ...requests.fabrics import GaugedRequest
+from ...requests.fabrics import StitchesRequest
 from ...requests.faults import CheckedBy
 from ..registry import Command, Operation
 
 Stress = Annotated[float, Field(ge=0, le=100)]
 
 
-class CurveRequest(GaugedRequest):
+class CurveRequest(StitchesRequest):
     """A chart, a direction and the stresses to ask for."""
 
     direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
@@ -50,7 +50,7 @@ class CurveResult(IntervalResult):
 def curve(request: CurveRequest, context: Context) -> CurveResult:
     """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
     check_cancelled(context.cancelled)
-    curve = request.pass_to(chart_curve, *request.fabric(context), size=request.relaxed_size)
+    curve = request.pass_to(chart_curve, *request.stitches(context), size=request.relaxed_size)
     return CurveResult.of(
         curve,
         strain_interval=(curve.strain_low, curve.strain_high),

@@ -1,14 +1,17 @@
 """The mechanics of a chart."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.segments import SegmentCounts, segment_map
-from knitcore.chart.stitch_chart import size_in_words
+from knitcore.chart.stitch_chart import StitchChart, size_in_words
+from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
 from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.materials import Material
+from knitcore.materials.yarn_per_stitch import has_loop_length, mean_yarn
 from knitcore.prediction.hand import hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.swept import worth_relaxing
@@ -16,13 +19,14 @@ from knitcore.prediction.swept import worth_relaxing
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
 from ...requests.charts import OutlineInput
-from ...requests.fabrics import ElasticConstants, Extensibility, GaugedRequest
+from ...requests.fabrics import ElasticConstants, Extensibility, StitchesRequest
 from ..registry import Command, Operation
 
 
-class PredictRequest(GaugedRequest):
+class PredictRequest(StitchesRequest):
     """A chart and its material; constants of a shaped piece are those of the largest rectangle
-    inside its outline, its size is that of the whole."""
+    inside its outline, its size is that of the whole. A chart of other stitches than knit and purl
+    is a rectangle."""
 
     outline: OutlineInput = None
     hand: bool = Field(
@@ -79,13 +83,17 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
     relaxed_course_interval_mm: Ends
     relaxed_wale_interval_mm: Ends
     relaxed_source: str
+    yarn_per_stitch_mm: float | None = Field(
+        description="Yarn in the mean stitch; null if the material has no loop length."
+    )
+    yarn_per_stitch_interval_mm: Ends | None
     width_mm: float = Field(description="Width of the whole piece at rest, at its widest.")
     height_mm: float = Field(description="Height of the whole piece at rest, at its highest.")
     width_interval_mm: Ends
     height_interval_mm: Ends
     provenance: str = Field(
-        description="Source of the constants: measured; estimated; swept; learned; or learned with "
-        "known size."
+        description="Source of the constants: measured; estimated; swept; learned; learned with "
+        "known size; or learned with other stitches."
     )
     method: str
     worth_relaxing: str | None = Field(
@@ -98,17 +106,19 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
     """Effective constants with their 90 % intervals and their source."""
-    whole, material = request.fabric(context)
+    stitches, material = request.stitches(context)
+    whole = stitches if isinstance(stitches, StitchChart) else stitches.plain
     shaped = ShapedChart.rectangle(whole)
     if request.outline is not None:
-        shaped = ShapedChart(whole, outline_marks(request.outline))
+        shaped = ShapedChart(knits_and_purls(stitches), outline_marks(request.outline))
     chart, notes = shaped.rectangle_inside(), []
+    described = chart if isinstance(stitches, StitchChart) else stitches
     if not shaped.is_rectangle:
         notes.append(
             "All but the size is of the largest rectangle inside the outline, "
             f"{chart.columns} x {chart.rows} stitches."
         )
-    predicted = predict_chart(chart, material, request.relaxed_size)
+    predicted = predict_chart(described, material, request.relaxed_size)
     segments = segment_map(chart)
     to_relax = worth_relaxing(chart, material, predicted)
     given = {
@@ -116,11 +126,19 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         "columns": chart.columns,
         "segments": {direction: segments.counts(direction) for direction in Direction},
         "worth_relaxing": None if to_relax is None else to_relax.text,
+        **_yarn(described, material),
         "notes": [*notes, *predicted.notes],
-        "hand": hand_pulls(chart, material, predicted) if request.hand else [],
+        "hand": hand_pulls(described, material, predicted) if request.hand else [],
     }
     whole_piece = vars(size_at_rest(shaped, material, predicted))
     return PredictResult.model_validate(predicted.to_dict() | whole_piece | given)
+
+
+def _yarn(chart: StitchChart | SymbolChart, material: Material) -> dict[str, Any]:
+    """Yarn in the mean stitch, or nulls."""
+    known = has_loop_length(material)
+    mean, ends = mean_yarn(chart, material) if known else (None, None)
+    return {"yarn_per_stitch_mm": mean, "yarn_per_stitch_interval_mm": ends}
 
 
 def _lines(r: PredictResult) -> list[str]:
@@ -140,6 +158,7 @@ def _lines(r: PredictResult) -> list[str]:
         f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
         f"stitch at rest  {_relaxed(r)}",
         f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
+        *_yarn_line(r),
         *(_hand_line(pull) for pull in r.hand),
         f"source          {r.provenance} ({r.method})",
     ]
@@ -151,6 +170,15 @@ def _hand_line(pull: HandPullResult) -> str:
         low, high = of.strain_interval
         along.append(f"{direction} {of.strain:.0%} ({low:.0%} to {high:.0%}, {of.word})")
     return f"{pull.pull + ' pull':<16}{'   '.join(along)} at {pull.n_per_mm:g} N/mm"
+
+
+def _yarn_line(r: PredictResult) -> list[str]:
+    if r.yarn_per_stitch_mm is None or r.yarn_per_stitch_interval_mm is None:
+        return []
+    low, high = r.yarn_per_stitch_interval_mm
+    return [
+        f"yarn            {r.yarn_per_stitch_mm:.2f} mm a stitch (90 %: {low:.2f} to {high:.2f})"
+    ]
 
 
 def _relaxed(r: PredictResult) -> str:

@@ -9,7 +9,9 @@ from pathlib import Path
 from knitcore.base.errors import InputError
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches, knits_and_purls
 from knitcore.formats.designs.design_file import read_design
+from knitcore.formats.read.parent_loops import is_parent_loops, read_parent_loops
 from knitcore.formats.read.text_chart import read_text_chart
 from knitcore.formats.read.written_reader import looks_written, read_noted_rows
 from knitcore.garment.piece import Piece
@@ -87,9 +89,40 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
     """
     file = Path(path)
     if file.suffix.lower() == ".json":
-        return read_design(_checked(file)).to_chart(), ()
+        text, notes = _text(_checked(file))
+        if is_parent_loops(text):
+            chart, said = read_parent_loops(text)
+            return knits_and_purls(chart), (*notes, *said)
+        return read_design(file).to_chart(), ()
     content = read_noted_piece(file)
     return content.chart, content.notes
+
+
+@in_reading_time
+def read_noted_stitches(path: str | Path) -> tuple[StitchChart | SymbolChart, tuple[str, ...]]:
+    """The chart in a file that may have lace, cables, slips and tucks, and the notes of the reader.
+
+    Parameters
+    ----------
+    path : as for :func:`read_noted_piece`, or ``.stitches.json``, loops with their parents
+        (:mod:`knitcore.formats.read.parent_loops`).
+
+    Raises
+    ------
+    InputError
+        As :func:`read_noted_chart`.
+    """
+    file = _checked(Path(path))
+    if has_other_stitches(file):
+        text, notes = _text(file)
+        chart, said = read_parent_loops(text)
+        return as_stitches(chart), (*notes, *said)
+    return read_noted_chart(file)
+
+
+def has_other_stitches(file: Path) -> bool:
+    """Tell whether a file may have other stitches than knit and purl."""
+    return file.suffix.lower() == ".json" and is_parent_loops(_text(file)[0])
 
 
 @in_reading_time
@@ -154,6 +187,10 @@ def _read_rows(file: Path) -> PieceInFile:
 
 
 def _read_design(file: Path) -> PieceInFile:
+    text, notes = _text(file)
+    if is_parent_loops(text):
+        chart, said = read_parent_loops(text)
+        return PieceInFile(Piece.plain(knits_and_purls(chart)), (*notes, *said))
     return PieceInFile(read_design(file).to_piece())
 
 
