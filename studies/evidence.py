@@ -394,8 +394,8 @@ def lace_and_cables(folder: Path, claims: list[Claim]) -> str:
 ## Lace and cables
 
 {len(swatches.lace)} swatches of the same yarn (`python -m studies.other_stitches FOLDER`). Sizes
-follow from the mixture of knits and purls and two effects, of yarn overs and of pairs of stitches
-that cross. Rms factors, both, width and height:
+follow from the mixture of knits and purls and three effects: yarn overs, loops that lean beside
+them, and pairs of stitches that cross. Rms factors, both, width and height:
 
 {table("| | lace | cables |", rows)}
 

@@ -60,8 +60,8 @@ def main() -> None:
     inside = np.abs(judged.missed) <= Z_SCORE * sd
     print(f"cover lace {inside[lace].mean():.2f}, cables {inside[~lace].mean():.2f}")
     constants = swatches.fitted(CANDIDATES[IN_USE], np.ones(len(lace), dtype=bool))
-    spread = np.linalg.inv(swatches.counts.T @ swatches.counts).diagonal() ** 0.5
-    for name, of_size, one in zip(("yarn_overs", "crossings"), constants.T, spread, strict=True):
+    spread = np.linalg.inv(swatches.with_leans.T @ swatches.with_leans).diagonal() ** 0.5
+    for name, of_size, one in zip(KINDS_IN_USE, constants.T, spread, strict=True):
         print(name, *(f"{c:.2f} ± {one * s:.2f}" for c, s in zip(of_size, sd, strict=True)))
 
 
@@ -88,6 +88,11 @@ class Compared(NamedTuple):
     def counts(self) -> Array:
         """(swatches, 2) densities of yarn overs and of crossings."""
         return np.array([(own.yarn_overs, own.crossings) for own in self.made_of])
+
+    @property
+    def with_leans(self) -> Array:
+        """(swatches, 3) the same, and of leaning loops."""
+        return np.column_stack([self.counts, [own.leans for own in self.made_of]])
 
     @property
     def kinds(self) -> Array:
@@ -131,7 +136,8 @@ def _fading(at: float) -> Callable[[Compared], Array]:
     return given
 
 
-IN_USE = f"stitches, folds fade at {FADES[0]:g}"
+KINDS_IN_USE = "yarn_overs", "crossings", "leans"
+IN_USE = f"stitches and leans, folds fade at {FADES[0]:g}"
 CANDIDATES = {
     "all like stockinette": Candidate(lambda s: np.zeros_like(s.true)),
     "offset of its kind": Candidate(lambda s: np.zeros_like(s.true), lambda s: s.kinds),
@@ -139,6 +145,10 @@ CANDIDATES = {
     "half of them, offset of its kind": Candidate(lambda s: s.plain / 2, lambda s: s.kinds),
     "stitches, with folds": Candidate(lambda s: s.plain, lambda s: s.counts),
     "stitches, without folds": Candidate(lambda s: s.flat, lambda s: s.counts),
+    **{
+        f"stitches and leans, folds fade at {at:g}": Candidate(_fading(at), lambda s: s.with_leans)
+        for at in FADES
+    },
     **{
         f"stitches, folds fade at {at:g}": Candidate(_fading(at), lambda s: s.counts)
         for at in FADES

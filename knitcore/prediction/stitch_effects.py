@@ -38,7 +38,7 @@ FADE = 0.05
 """Share of other stitches at which cloth folds 1/e as much as its knits and purls alone."""
 STRETCH_FACTOR = 2.0
 """Factor by which the 90 % interval of strains and moduli is wider than that of knits and purls."""
-KINDS = "yarn_overs", "crossings", "slips", "tucks"
+KINDS = "yarn_overs", "leans", "crossings", "slips", "tucks"
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,7 @@ class StitchDensities:
     Attributes
     ----------
     yarn_overs, slips, tucks : shares of the chart's stitches.
+    leans : wales by which the loops beside yarn overs and decreases lean.
     crossings : pairs of stitches that cross; a 2/2 cable has 4.
     crossed : share of the stitches that take part in a cable.
     """
@@ -55,6 +56,7 @@ class StitchDensities:
     yarn_overs: float
     slips: float
     tucks: float
+    leans: float
     crossings: float
     crossed: float
 
@@ -69,10 +71,13 @@ class StitchDensities:
             layers = [site.layer for site in STITCHES[place].sites] if place >= 0 else []
             pairs += int(count) * layers.count(1) * layers.count(-1)
         size = graph.act.size
+        site = np.repeat(np.tile(np.arange(chart.columns), chart.rows), takes.ravel())
+        lean = np.abs(graph.source - site)[graph.layer == 0]
         return cls(
             yarn_overs=float((over & (takes == 0)).sum()) / size,
             slips=float(miss.sum()) / size,
             tucks=float((over & (takes > 0)).sum()) / size,
+            leans=float(lean.sum()) / size,
             crossings=pairs / size,
             crossed=float((graph.layer != 0).sum()) / size,
         )

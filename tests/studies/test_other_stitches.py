@@ -8,7 +8,7 @@ import pytest
 
 from knitcore import material
 from knitcore.prediction.stitch_effects import FADE, StitchDensities, effects
-from studies.other_stitches import CANDIDATES, FADES, IN_USE, Compared, compared
+from studies.other_stitches import CANDIDATES, FADES, IN_USE, KINDS_IN_USE, Compared, compared
 
 FOLDER = os.environ.get("KNITCORE_STUDY_DATA")
 
@@ -18,7 +18,7 @@ def invented() -> Compared:
     """Swatches without folds that yarn overs widen by 0.5 and crossings narrow by 0.6."""
     rng = np.random.default_rng(3)
     counts = rng.random((60, 2)) * [0.25, 0.3]
-    made_of = [StitchDensities(yo, 0, 0, pairs, pairs / 2) for yo, pairs in counts]
+    made_of = [StitchDensities(yo, 0, 0, 0, pairs, pairs / 2) for yo, pairs in counts]
     flat, folds = rng.normal(0, 0.1, (2, 60, 2))
     true = flat + counts @ np.array([[0.5, -0.2], [-0.6, -0.5]])
     return Compared(
@@ -54,7 +54,7 @@ def test_a_swatch_is_judged_without_its_texture(invented: Compared) -> None:
 def test_the_packaged_effects_are_those_of_the_study() -> None:
     swatches = compared(Path(str(FOLDER)), material("lace-acrylic"))
     constants = swatches.fitted(CANDIDATES[IN_USE], np.ones(len(swatches.lace), dtype=bool))
-    for kind, of_size in zip(("yarn_overs", "crossings"), constants.T, strict=True):
+    for kind, of_size in zip(KINDS_IN_USE, constants.T, strict=True):
         assert effects()[kind].log_size == pytest.approx(of_size, abs=0.006)
     assert FADES[0] == FADE
     left = np.sqrt((swatches.judged.missed**2).mean(axis=0))
