@@ -83,6 +83,22 @@ class StitchGraph:
             taker[row - 1, below] = sites - copy * self.columns
         return taker
 
+    def longest_float(self) -> int:
+        """Most neighbouring stitches of a row that its yarn passes by, over the repeat's edge too.
+
+        Examples
+        --------
+        >>> from knitcore.chart.symbol_chart import SymbolChart
+        >>> SymbolChart.parse("VKKV;KKKK").graph.longest_float()
+        2
+        """
+        missed = np.tile(self.act == YarnAct.MISS, 2).astype(int)
+        run, longest = np.zeros(self.rows, dtype=int), 0
+        for column in missed.T:
+            run = (run + 1) * column
+            longest = max(longest, int(run.max()))
+        return min(longest, self.columns)
+
     def rows_held(self) -> Indices:
         """Rows that a site's loop is held for before a loop is pulled through it, (rows, columns).
 

@@ -103,9 +103,9 @@ class SymbolChart:
         'KP\\nPK'
         """
         check_kind("chart", text, str, "Give rows of stitches such as 'O/KK;KKKK'.")
-        lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
-        if set("".join(lines)) <= _PLAIN:
+        if _is_plain(text):
             return cls.of(StitchChart.parse(text))
+        lines = _lines(text)
         rows = [row for line in lines for row in line.lstrip("\ufeff").split(";") if row.strip()]
         cells = [_read_row(row, len(rows) - above) for above, row in enumerate(rows)]
         widths = [len(row) for row in cells]
@@ -274,10 +274,21 @@ def as_stitches(chart: StitchChart | SymbolChart | str) -> StitchChart | SymbolC
     >>> as_stitches("KP/PK"), as_stitches("KK;O/")
     (StitchChart(2 rows, 2 columns), SymbolChart(2 rows, 2 columns))
     """
-    if isinstance(chart, StitchChart) or (isinstance(chart, str) and is_name_of_fabric(chart)):
+    if isinstance(chart, StitchChart):
+        return chart
+    if isinstance(chart, str) and (is_name_of_fabric(chart) or _is_plain(chart)):
         return as_chart(chart)
     symbols = chart if isinstance(chart, SymbolChart) else SymbolChart.parse(chart)
     return symbols.plain if symbols.is_plain else symbols
+
+
+def _lines(text: str) -> list[str]:
+    return [line for line in text.splitlines() if not line.lstrip().startswith("#")]
+
+
+def _is_plain(text: str) -> bool:
+    """Say whether a text has nothing but knits and purls."""
+    return set("".join(_lines(text))) <= _PLAIN
 
 
 def knits_and_purls(chart: StitchChart | SymbolChart) -> StitchChart:

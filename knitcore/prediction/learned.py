@@ -25,12 +25,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array
+from knitcore.base.gaussian_process import KernelModel, KernelSettings, Samples
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, Origin
 from knitcore.prediction.densities import Densities, densities
-from knitcore.prediction.gaussian_process import KernelModel, KernelSettings, Samples
 from knitcore.prediction.mixture import Mixture, present, pure_numbers
 from knitcore.prediction.size import RelaxedSize
 

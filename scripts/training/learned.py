@@ -16,17 +16,12 @@ from scipy.linalg import LinAlgError, cho_solve, cholesky
 from scipy.optimize import linprog, minimize
 
 from knitcore.base.arrays import Array
+from knitcore.base.gaussian_process import KernelModel, KernelSettings, Samples, noisy_covariance
 from knitcore.chart.fabric import PHASES, Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import FabricRecord, Material, Yarn, load_library
 from knitcore.materials.law_uncertainty import COVERAGE, Z_SCORE
 from knitcore.prediction.densities import FEATURES, Densities, densities
-from knitcore.prediction.gaussian_process import (
-    KernelModel,
-    KernelSettings,
-    Samples,
-    noisy_covariance,
-)
 from knitcore.prediction.learned import STRESS_GRID, follows
 from knitcore.prediction.mixture import Mixture, yarn_numbers
 from knitcore.prediction.swept import STRESS, of_law, over_mixture, simulated_record

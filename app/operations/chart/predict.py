@@ -14,6 +14,7 @@ from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import has_loop_length, mean_yarn
 from knitcore.prediction.hand import hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
+from knitcore.prediction.stitch_effects import StitchDensities
 from knitcore.prediction.swept import worth_relaxing
 
 from ...context import Context
@@ -61,6 +62,19 @@ class SegmentCountsResult(ResultModel, SegmentCounts):
     """Segments of one direction by their symmetry."""
 
 
+class OtherStitchesResult(ResultModel):
+    """Stitches of a chart that are neither knit nor purl, as shares of all."""
+
+    yarn_overs: float
+    slips: float
+    tucks: float
+    crossings: float = Field(description="Pairs of stitches that cross: a 2/2 cable has 4.")
+    leans: float = Field(description="Wales by which the mean stitch of lace leans.")
+    longest_float_mm: float = Field(
+        description="Longest stretch of yarn behind or in front of slipped stitches, at rest."
+    )
+
+
 class PredictResult(ElasticConstants, Extensibility, IntervalResult):
     """Effective elastic constants of the whole chart at small strain, with 90 % intervals."""
 
@@ -87,6 +101,9 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
         description="Yarn in the mean stitch; null if the material has no loop length."
     )
     yarn_per_stitch_interval_mm: Ends | None
+    other_stitches: OtherStitchesResult | None = Field(
+        description="Null where all stitches are knits and purls."
+    )
     width_mm: float = Field(description="Width of the whole piece at rest, at its widest.")
     height_mm: float = Field(description="Height of the whole piece at rest, at its highest.")
     width_interval_mm: Ends
@@ -127,6 +144,9 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         "segments": {direction: segments.counts(direction) for direction in Direction},
         "worth_relaxing": None if to_relax is None else to_relax.text,
         **_yarn(described, material),
+        "other_stitches": None
+        if isinstance(described, StitchChart)
+        else _others(described, predicted.relaxed_course_mm),
         "notes": [*notes, *predicted.notes],
         "hand": hand_pulls(described, material, predicted) if request.hand else [],
     }
@@ -139,6 +159,15 @@ def _yarn(chart: StitchChart | SymbolChart, material: Material) -> dict[str, Any
     known = has_loop_length(material)
     mean, ends = mean_yarn(chart, material) if known else (None, None)
     return {"yarn_per_stitch_mm": mean, "yarn_per_stitch_interval_mm": ends}
+
+
+def _others(chart: SymbolChart, stitch_mm: float) -> dict[str, float]:
+    """Densities of a chart's other stitches, and its longest float."""
+    made_of = StitchDensities.of(chart)
+    passed = chart.graph.longest_float()
+    names = OtherStitchesResult.model_fields.keys() - {"longest_float_mm"}
+    shares = {name: getattr(made_of, name) for name in names}
+    return shares | {"longest_float_mm": stitch_mm * (passed + 1) if passed else 0.0}
 
 
 def _lines(r: PredictResult) -> list[str]:
@@ -159,6 +188,7 @@ def _lines(r: PredictResult) -> list[str]:
         f"stitch at rest  {_relaxed(r)}",
         f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
         *_yarn_line(r),
+        *_others_line(r),
         *(_hand_line(pull) for pull in r.hand),
         f"source          {r.provenance} ({r.method})",
     ]
@@ -179,6 +209,17 @@ def _yarn_line(r: PredictResult) -> list[str]:
     return [
         f"yarn            {r.yarn_per_stitch_mm:.2f} mm a stitch (90 %: {low:.2f} to {high:.2f})"
     ]
+
+
+def _others_line(r: PredictResult) -> list[str]:
+    of = r.other_stitches
+    if of is None:
+        return []
+    floats = f", floats up to {of.longest_float_mm:.1f} mm" if of.longest_float_mm else ""
+    counts = {"yarn overs": of.yarn_overs, "slips": of.slips, "tucks": of.tucks}
+    shown = [f"{share:.0%} {name}" for name, share in counts.items() if share]
+    crossings = [f"{of.crossings:.2f} crossings a stitch"] if of.crossings else []
+    return [f"other stitches  {', '.join([*shown, *crossings])}{floats}"]
 
 
 def _relaxed(r: PredictResult) -> str:

@@ -10,7 +10,12 @@ from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
-from knitcore.formats.read.chart_files import Aspect, PictureReading, read_noted_piece
+from knitcore.formats.read.chart_files import (
+    Aspect,
+    PictureReading,
+    has_other_stitches,
+    read_noted_piece,
+)
 
 from ...context import Context
 from ...requests.base import NoRequest, RequestModel, ResultModel
@@ -119,7 +124,7 @@ def design_in(
     InputError
         If it holds no chart.
     """
-    if path.suffix.lower() == ".json":
+    if path.suffix.lower() == ".json" and not has_other_stitches(path):
         design = read_design(path)
         return ImportedDesign.of(design, chart=design.to_chart().text), ()
     content = read_noted_piece(path, reading)

@@ -7,7 +7,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from knitcore.materials import material, save_material_file
-from tests.app.command_line import run
+from tests.app.command_line import refused, run
 from tests.app.rest import post, refusal
 
 FIELDS = {
@@ -76,3 +76,68 @@ def test_a_prediction_is_of_the_largest_rectangle_in_the_outline(
     assert run("predict", str(file), "--material", "acrylic") == result
 
     assert refusal(client, "predict", body | {"outline": "xx\nxx"})["field"] == "outline"
+
+
+LACE = {
+    "rows": [
+        [["K"]] * 4,
+        [["K", 3], ["K", 2], ["K"], ["K", 1, 0]],
+        [["K", i] for i in (3, 2, 1, 0)],
+    ]
+}
+
+
+def test_lace_is_predicted_from_a_file_standard_input_a_repeat_and_rest(
+    client: TestClient, tmp_path: Path
+) -> None:
+    file = tmp_path / "lace.stitches.json"
+    file.write_text(json.dumps(LACE))
+    result = run("predict", str(file), "--material", "acrylic")
+    assert (result["rows"], result["columns"]) == (2, 4)
+    assert result["provenance"] == "learned with other stitches"
+    assert (
+        result["relaxed_course_mm"]
+        > run("predict", "K", "--material", "acrylic")["relaxed_course_mm"]
+    )
+    assert result["other_stitches"]["yarn_overs"] == pytest.approx(1 / 8)
+    repeat = "KKKK;/OKK"
+    assert run("predict", repeat, "--material", "acrylic") == result
+    assert post(client, "predict", {"chart": repeat, "material": "acrylic"}) == result
+    curve = run("curve", str(file), "--material", "acrylic", "--direction", "course")
+    assert curve["provenance"] == result["provenance"]
+
+
+def test_knits_and_purls_with_parents_are_a_chart_everywhere(tmp_path: Path) -> None:
+    file = tmp_path / "seed.stitches.json"
+    rows = [[["K"], ["K"]], [["P", 1], ["K", 0]], [["P", 1], ["K", 0]]]
+    file.write_text(json.dumps({"rows": rows}))
+    seed = run("predict", "KP/PK", "--material", "acrylic")
+    assert run("predict", str(file), "--material", "acrylic") == seed
+    assert run("rs", "--material", "acrylic")
+    assert run("curl", str(file), "--material", "acrylic")["converged"]
+
+
+def test_other_commands_name_the_stitches_that_they_refuse(tmp_path: Path) -> None:
+    file = tmp_path / "lace.stitches.json"
+    file.write_text(json.dumps(LACE))
+    words = refused("curl", file, "--material", "acrylic")
+    assert "yarn over and knit 2 together" in words
+    assert "predict" in words
+
+
+@pytest.mark.parametrize("chart", ["O/K;KKO", "VK;VK", "[2/2R]K;KKKK"])
+def test_a_row_that_does_not_balance_is_refused(client: TestClient, chart: str) -> None:
+    problem = refusal(client, "predict", {"chart": chart, "material": "acrylic"})
+    assert problem["field"] == "chart"
+    assert "row 1" in problem["detail"]
+
+
+def test_the_yarn_of_a_stitch_is_given_if_it_is_known(client: TestClient) -> None:
+    knit, slipped = (
+        post(client, "predict", {"chart": chart, "material": "acrylic"}) for chart in ("K", "VK;KK")
+    )
+    low, high = knit["yarn_per_stitch_interval_mm"]
+    assert low < knit["yarn_per_stitch_mm"] < high
+    assert slipped["yarn_per_stitch_mm"] < knit["yarn_per_stitch_mm"]
+    assert knit["other_stitches"] is None
+    assert slipped["other_stitches"]["longest_float_mm"] > slipped["relaxed_course_mm"]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore.prediction.gaussian_process import KernelModel, KernelSettings, Samples, covariance
+from knitcore.base.gaussian_process import KernelModel, KernelSettings, Samples, covariance
 
 SETTINGS = KernelSettings(0.5, 0.1, 1.0, 1.0, 2.0, 0.01)
 
