@@ -132,6 +132,24 @@ _SINGLES = (
     _single("\\", "slip, slip, knit", "ssk", _pulled((1, 0))),
     _single(")", "purl 2 together", "p2tog", _pulled((0, 1), purl=True)),
     _single("(", "slip, slip, purl", "ssp", _pulled((1, 0), purl=True)),
+    _single(
+        "[K10']", "knit 2 together through the back loops", "k2tog tbl", _pulled((1, 0), turn=1)
+    ),
+    _single(
+        "[P10']",
+        "purl 2 together through the back loops",
+        "p2tog tbl",
+        _pulled((1, 0), purl=True, turn=1),
+    ),
+    _single(
+        "[K01']", "knit 2 together, twisted the other way", "k2tog tw", _pulled((0, 1), turn=-1)
+    ),
+    _single(
+        "[P01']",
+        "purl 2 together, twisted the other way",
+        "p2tog tw",
+        _pulled((0, 1), purl=True, turn=-1),
+    ),
     _single("^", "centred double decrease", "s2kp2", _pulled((1, 2, 0))),
     _single("[P201]", "centred double decrease, purled", "s2pp2", _pulled((2, 0, 1), purl=True)),
     _single("L", "slip 1, knit 2 together, pass over", "sk2p", _pulled((2, 0, 1))),
@@ -191,6 +209,11 @@ BY_CODE = {stitch.code: place for place, stitch in enumerate(STITCHES)}
 @cache
 def _places() -> dict[tuple[Site, ...], int]:
     return {stitch.sites: place for place, stitch in enumerate(STITCHES)}
+
+
+def place_of(sites: tuple[Site, ...]) -> int | None:
+    """Find the stitch of these sites: its place in :data:`STITCHES`, None if there is none."""
+    return _places().get(sites)
 
 
 def _of_sites(sites: tuple[Site, ...]) -> StitchType:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,15 +13,33 @@ from numpy.typing import ArrayLike, NDArray
 from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.base.kinds import check_kind
-from knitcore.chart.stitch_chart import KNIT_SYMBOLS, PURL_SYMBOLS, StitchChart, check_chart_size
+from knitcore.chart.stitch_chart import (
+    KNIT_SYMBOLS,
+    PURL_SYMBOLS,
+    StitchChart,
+    as_chart,
+    check_chart_size,
+    is_name_of_fabric,
+    period,
+)
 from knitcore.chart.stitch_graph import StitchGraph
-from knitcore.chart.stitch_kinds import BY_CODE, KNIT, PURL, STITCHES, StitchType, YarnAct
+from knitcore.chart.stitch_kinds import (
+    BY_CODE,
+    KNIT,
+    PURL,
+    STITCHES,
+    Site,
+    StitchType,
+    YarnAct,
+    place_of,
+)
 
 Cells = NDArray[np.int16]
 CONTINUED = -1
 """The number of a cell that belongs to the stitch on its left."""
 
-_CODE = re.compile(r"\[[^\]\s]*\]|[^\s,]")
+CODE = re.compile(r"\[[^\]\s]*\]|[^\s,]")
+"""One stitch in a text."""
 _PLAIN = KNIT_SYMBOLS | PURL_SYMBOLS | set("/ \t,\r\n\ufeff")
 _ALIASES = dict.fromkeys(KNIT_SYMBOLS, "K") | dict.fromkeys(PURL_SYMBOLS, "P")
 
@@ -86,7 +105,7 @@ class SymbolChart:
         """
         check_kind("chart", text, str, "Give rows of stitches such as 'O/KK;KKKK'.")
         lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
-        if set("".join(lines)) <= _PLAIN:
+        if _is_plain_text(text):
             return cls.of(StitchChart.parse(text))
         rows = [row for line in lines for row in line.lstrip("\ufeff").split(";") if row.strip()]
         cells = [_read_row(row, len(rows) - above) for above, row in enumerate(rows)]
@@ -105,6 +124,26 @@ class SymbolChart:
     def of(cls, chart: StitchChart) -> SymbolChart:
         """A chart of knits and purls as one of stitches."""
         return cls(np.where(chart.purl, BY_CODE["P"], BY_CODE["K"]).astype(np.int16))
+
+    @classmethod
+    def of_sites(cls, rows: Sequence[Sequence[Site]]) -> SymbolChart:
+        """Find the stitches of sites.
+
+        Parameters
+        ----------
+        rows : sites from the left, the bottom row first; their sources are columns of the row
+            below.
+
+        Raises
+        ------
+        InputError
+            As the class, and where no stitch takes its loops as a site does.
+        """
+        return cls(
+            np.array(
+                [_stitches_of(sites, row) for row, sites in enumerate(rows, 1)], dtype=np.int16
+            )
+        )
 
     @property
     def rows(self) -> int:
@@ -191,6 +230,14 @@ class SymbolChart:
         check_chart_size(self.rows * down, self.columns * across)
         return SymbolChart(np.tile(self.cells, (down, across)))
 
+    def repeat_cut(self) -> SymbolChart:
+        """The smallest repeat whose periodic continuation, cut anywhere, gives this chart.
+
+        As :meth:`StitchChart.repeat_cut`; it begins and ends between stitches.
+        """
+        rows, columns = (period(grid, cut=True) for grid in (self.cells, self.cells.T))
+        return SymbolChart(self.cells[:rows, :columns])
+
     def mirror(self) -> SymbolChart:
         """The chart reflected left to right: a right cross becomes a left one."""
         return self._reflected({place: s.mirrored for place, s in self._kinds().items()})
@@ -221,6 +268,86 @@ class SymbolChart:
 
     def __repr__(self) -> str:
         return f"SymbolChart({self.rows} rows, {self.columns} columns)"
+
+
+def as_stitches(chart: StitchChart | SymbolChart | str) -> StitchChart | SymbolChart:
+    """Take a chart as it is, or read its text; one of knits and purls alone is a StitchChart.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or its text is no chart.
+
+    Examples
+    --------
+    >>> as_stitches("KP/PK"), as_stitches("KK;O/")
+    (StitchChart(2 rows, 2 columns), SymbolChart(2 rows, 2 columns))
+    """
+    if isinstance(chart, StitchChart) or (
+        isinstance(chart, str) and (is_name_of_fabric(chart) or _is_plain_text(chart))
+    ):
+        return as_chart(chart)
+    symbols = chart if isinstance(chart, SymbolChart) else SymbolChart.parse(chart)
+    return symbols.plain if symbols.is_plain else symbols
+
+
+def knits_and_purls(chart: StitchChart | SymbolChart) -> StitchChart:
+    """Take a chart of knits and purls.
+
+    Raises
+    ------
+    InputError
+        If it has other stitches, which the message names.
+    """
+    if isinstance(chart, StitchChart):
+        return chart
+    if chart.is_plain:
+        return chart.plain
+    names = [STITCHES[place].name for place in np.unique(chart.cells) if place > BY_CODE["P"]]
+    more = f" and {len(names) - 1} other kinds" if len(names) > 2 else ""
+    raise InputError(
+        "chart",
+        f"the chart has {names[0]}{more or ''.join(f' and {name}' for name in names[1:])}; this "
+        "takes knits and purls only.",
+        "Use knit and purl, or `predict`, which takes every stitch.",
+    )
+
+
+def plain_chart(text: str) -> StitchChart:
+    """Read rows of K and P, and refuse other stitches by their names.
+
+    Raises
+    ------
+    InputError
+        As :meth:`StitchChart.parse` and :func:`knits_and_purls`.
+    """
+    try:
+        return StitchChart.parse(text)
+    except InputError:
+        stitches = stitches_in_text(text)
+        if stitches is None:
+            raise
+    return knits_and_purls(stitches)
+
+
+def stitches_in_text(text: str) -> SymbolChart | None:
+    """The chart of a text of codes of stitches; None if it has other signs, or only K, P and /.
+
+    Raises
+    ------
+    InputError
+        As :meth:`SymbolChart.parse`, where rows of such codes make no chart.
+    """
+    lines = (line for line in text.splitlines() if not line.lstrip().startswith("#"))
+    codes = {_ALIASES.get(code, code) for code in CODE.findall("".join(lines))} - {";", "\ufeff"}
+    has_others = bool(codes - {"K", "P", "/"})
+    return SymbolChart.parse(text) if has_others and codes <= BY_CODE.keys() else None
+
+
+def _is_plain_text(text: str) -> bool:
+    """Say whether a text has the signs of knits and purls alone, and those between them."""
+    lines = (line for line in text.splitlines() if not line.lstrip().startswith("#"))
+    return set("".join(lines)) <= _PLAIN
 
 
 def _as_cells(cells: ArrayLike) -> Cells:
@@ -282,9 +409,40 @@ def _check_knitted(chart: SymbolChart) -> None:
         )
 
 
+def _stitches_of(sites: Sequence[Site], row: int) -> list[int]:
+    """Cells of a row: the narrowest stitches that take neighbouring loops."""
+    cells: list[int] = []
+    taken = 0
+    while (start := len(cells)) < len(sites):
+        sources: list[int] = []
+        for end in range(start, len(sites)):
+            sources += sites[end].sources
+            if sorted(sources) == list(range(taken, taken + len(sources))):
+                break
+        own = tuple(
+            replace(site, sources=tuple(source - taken for source in site.sources))
+            for site in sites[start : end + 1]
+        )
+        place = place_of(own)
+        if place is None:
+            raise InputError(
+                "chart",
+                f"row {row}, stitch {start + 1} takes stitches {_in_words(sites[start].sources)} "
+                "of the row below in an order that no stitch of the list has.",
+                "Use stitches of the list, with at most 6 on each side of a cable.",
+            )
+        cells += [place] + [CONTINUED] * (len(own) - 1)
+        taken += len(sources)
+    return cells
+
+
+def _in_words(columns: Sequence[int]) -> str:
+    return " and ".join(str(column + 1) for column in columns) or "none"
+
+
 def _read_row(text: str, row: int) -> list[int]:
     cells: list[int] = []
-    for code in _CODE.findall(text):
+    for code in CODE.findall(text):
         place = BY_CODE.get(_ALIASES.get(code, code))
         if place is None:
             raise InputError(
