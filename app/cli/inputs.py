@@ -28,10 +28,10 @@ from pydantic.fields import FieldInfo
 from knitcore.base.errors import InputError
 
 from ..requests.base import UNIT
-from ..requests.charts import IS_REPEAT
+from ..requests.charts import ANY_STITCHES, IS_REPEAT
 from ..requests.faults import OF_VALUES, problem_in_words, remedy_in_words
 from ..requests.uploads import UploadedFile
-from .options import chart_file, is_fabric, resolve_chart, show_notes
+from .options import chart_file, is_fabric, resolve_chart, show_notes, stitches_of
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
@@ -169,7 +169,7 @@ class Inputs:
 
 
 def _chart_input(model: type[BaseModel]) -> Input:
-    is_repeat = IS_REPEAT in model.model_fields["chart"].metadata
+    marks = model.model_fields["chart"].metadata
     size = click.Option(
         ["--size"],
         metavar="COLUMNSxROWS",
@@ -178,6 +178,9 @@ def _chart_input(model: type[BaseModel]) -> Input:
 
     def fields(given: Given) -> dict[str, Any]:
         text, size = given["chart"], given["size"]
+        any_stitches = ANY_STITCHES in marks and size is None
+        if any_stitches and (repeat := stitches_of(text)) is not None:
+            return {"chart": repeat.text}
         if "outline" in model.model_fields and size is None:
             with chart_file(text) as file:
                 if file is not None:
@@ -187,7 +190,7 @@ def _chart_input(model: type[BaseModel]) -> Input:
                     show_notes(notes)
                     known = ((n, part) for n, part in design if n in model.model_fields)
                     return {name: part for name, part in known if part is not None}
-        chart = resolve_chart(text, size, is_repeat=is_repeat)
+        chart = resolve_chart(text, size, is_repeat=IS_REPEAT in marks)
         if is_fabric(text) and size is not None:
             named = {"fabric": text.lower(), "columns": chart.columns, "rows": chart.rows}
             return {"chart": named}

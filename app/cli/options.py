@@ -16,6 +16,8 @@ from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.patterns import PATTERNS
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_kinds import BY_CODE
+from knitcore.chart.symbol_chart import CODE, SymbolChart, knits_and_purls
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -154,6 +156,8 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     named = _chart_of_name(chart)
     signs = set(chart)
     if named is None and not (signs & STITCHES and signs <= STITCHES | SEPARATORS):
+        if (stitches := stitches_of(chart)) is not None:
+            knits_and_purls(stitches)
         raise _no_chart(chart)
     cloth = StitchChart.parse(chart.replace("/", "\n")) if named is None else named
     if size is not None:
@@ -166,6 +170,22 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     if named is not None and not is_repeat:
         raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
     return cloth if named is None else cloth.repeat()
+
+
+def stitches_of(chart: str) -> SymbolChart | None:
+    """A repeat in one line with other stitches than knit and purl; rows end with ``;``.
+
+    Raises
+    ------
+    InputError
+        If it does not balance.
+    """
+    codes = CODE.findall(chart.replace(";", ""))
+    known = all(code in BY_CODE or code in STITCHES for code in codes)
+    is_name = _names_file(chart) or _chart_of_name(chart) is not None
+    if is_name or not known or set(chart) <= STITCHES | SEPARATORS:
+        return None
+    return SymbolChart.parse(chart)
 
 
 def show_notes(notes: Iterable[str]) -> None:

@@ -6,6 +6,7 @@ from pydantic import BaseModel, Discriminator, Field, Tag
 
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches, plain_chart
 from knitcore.garment.shaped import outline_marks
 
 from .base import RequestModel
@@ -69,6 +70,28 @@ ChartInput = Annotated[
     ),
     CheckedBy(lambda chart, _: to_chart(chart)),
 ]
+ANY_STITCHES = "any stitches"
+AnyChartInput = Annotated[
+    Annotated[
+        str,
+        Field(
+            max_length=MAX_TEXT,
+            description="Lines of stitches, the top row first, as seen from the face: K and P, or "
+            "those of the list of stitches, such as O/KK (yarn over, knit 2 together, knit 2).",
+            examples=["KPKP\nPKPK"],
+        ),
+        Tag(TEXT_TAG),
+    ]
+    | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
+    Discriminator(
+        _way,
+        custom_error_type="chart_type",
+        custom_error_message="Input should be a text of stitches or a fabric with its size",
+    ),
+    CheckedBy(lambda chart, _: to_stitches(chart)),
+    ANY_STITCHES,
+]
+"""A chart that may have lace, cables, slipped and tucked stitches."""
 IS_REPEAT = "repeat"
 RepeatInput = Annotated[ChartInput, IS_REPEAT]
 """A chart that stands for its repeat: a pure fabric needs no size on the command line."""
@@ -109,11 +132,16 @@ def to_chart(chart: ChartInput) -> StitchChart:
     """The chart of a request."""
     if isinstance(chart, PureFabricChart):
         return StitchChart.of_fabric(chart.fabric, rows=chart.rows, columns=chart.columns)
-    return StitchChart.parse(chart)
+    return plain_chart(chart)
+
+
+def to_stitches(chart: AnyChartInput) -> StitchChart | SymbolChart:
+    """The chart of a request that takes every stitch."""
+    return as_stitches(chart) if isinstance(chart, str) else to_chart(chart)
 
 
 def to_repeat(chart: ChartInput) -> StitchChart:
     """The repeat of a request: the chart itself, or a pure fabric's own repeat."""
     if isinstance(chart, PureFabricChart):
         return StitchChart.of_fabric(chart.fabric).repeat()
-    return StitchChart.parse(chart)
+    return plain_chart(chart)

@@ -9,6 +9,7 @@ from pathlib import Path
 from knitcore.base.errors import InputError
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, stitches_in_text
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.read.text_chart import read_text_chart
 from knitcore.formats.read.written_reader import looks_written, read_noted_rows
@@ -36,6 +37,25 @@ class PieceInFile:
     def chart(self) -> StitchChart:
         """The face grid."""
         return self.piece.chart
+
+
+@dataclass(frozen=True)
+class StitchesInFile:
+    """The content of a file that may have other stitches than knits and purls.
+
+    Attributes
+    ----------
+    content : a piece of knits and purls, or a chart that has other stitches.
+    notes : as those of :class:`PieceInFile`.
+    """
+
+    content: Piece | SymbolChart
+    notes: tuple[str, ...] = ()
+
+    @property
+    def stitches(self) -> StitchChart | SymbolChart:
+        """The chart."""
+        return self.content.chart if isinstance(self.content, Piece) else self.content
 
 
 class Aspect(StrEnum):
@@ -93,6 +113,26 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
 
 
 @in_reading_time
+def read_noted_stitches(path: str | Path) -> tuple[StitchChart | SymbolChart, tuple[str, ...]]:
+    """The chart in a file that may have lace, cables, slips and tucks, and the notes of the reader.
+
+    Parameters
+    ----------
+    path : as for :func:`read_noted_piece`.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_noted_chart`.
+    """
+    file = Path(path)
+    if file.suffix.lower() == ".json":
+        return read_design(_checked(file)).to_stitches(), ()
+    read = read_any_stitches(file)
+    return read.stitches, read.notes
+
+
+@in_reading_time
 def read_noted_piece(path: str | Path, reading: PictureReading | None = None) -> PieceInFile:
     """The chart in a file, with its outline and its yarns, and the notes of the reader.
 
@@ -106,13 +146,29 @@ def read_noted_piece(path: str | Path, reading: PictureReading | None = None) ->
     Raises
     ------
     InputError
+        If the file is missing, too large, of another kind, has other stitches than knits and
+        purls, or its content does not match its name.
+    """
+    read = read_any_stitches(path, reading)
+    return PieceInFile(Piece.of(read.content), read.notes)
+
+
+@in_reading_time
+def read_any_stitches(path: str | Path, reading: PictureReading | None = None) -> StitchesInFile:
+    """Read a piece of knits and purls, or a chart that has other stitches.
+
+    Parameters are those of :func:`read_noted_piece`.
+
+    Raises
+    ------
+    InputError
         If the file is missing, too large, of another kind, or its content does not match its name.
     """
     file = _checked(Path(path))
     if file.suffix.lower() in _PICTURES:
         from knitcore.formats.read.picture import read_picture  # needs Pillow
 
-        return PieceInFile(*read_picture(file, reading))
+        return StitchesInFile(*read_picture(file, reading))
     return _READERS[file.suffix.lower()](file)
 
 
@@ -134,7 +190,7 @@ def _checked(file: Path) -> Path:
     return file
 
 
-def _read_text(file: Path) -> PieceInFile:
+def _read_text(file: Path) -> StitchesInFile:
     text, notes = _text(file)
     if looks_like_program(text):
         return _read_knitout(file)
@@ -142,27 +198,31 @@ def _read_text(file: Path) -> PieceInFile:
         return _read_design(file)
     if looks_written(text):
         piece, said = read_noted_rows(text)
-        return PieceInFile(piece, (*notes, *said))
+        return StitchesInFile(piece, (*notes, *said))
+    if (stitches := stitches_in_text(text)) is not None:
+        return StitchesInFile(stitches, notes)
     chart, said = read_text_chart(text)
-    return PieceInFile(Piece.plain(chart), (*notes, *said))
+    return StitchesInFile(Piece.plain(chart), (*notes, *said))
 
 
-def _read_rows(file: Path) -> PieceInFile:
+def _read_rows(file: Path) -> StitchesInFile:
     text, notes = _text(file)
     piece, said = read_noted_rows(text)
-    return PieceInFile(piece, (*notes, *said))
+    return StitchesInFile(piece, (*notes, *said))
 
 
-def _read_design(file: Path) -> PieceInFile:
-    return PieceInFile(read_design(file).to_piece())
+def _read_design(file: Path) -> StitchesInFile:
+    design = read_design(file)
+    stitches = design.to_stitches()
+    return StitchesInFile(stitches if isinstance(stitches, SymbolChart) else design.to_piece())
 
 
-def _read_knitout(file: Path) -> PieceInFile:
+def _read_knitout(file: Path) -> StitchesInFile:
     from knitcore.formats.read.knitout_reader import knitted_chart
 
     text, notes = _text(file)
     knitted = knitted_chart(text)
-    return PieceInFile(knitted.piece, (*notes, *knitted.notes))
+    return StitchesInFile(knitted.piece, (*notes, *knitted.notes))
 
 
 def _text(file: Path) -> tuple[str, tuple[str, ...]]:
@@ -184,7 +244,7 @@ def _text(file: Path) -> tuple[str, tuple[str, ...]]:
     return text, ()
 
 
-_READERS: dict[str, Callable[[Path], PieceInFile]] = {
+_READERS: dict[str, Callable[[Path], StitchesInFile]] = {
     ".txt": _read_text,
     ".ks": _read_rows,
     ".json": _read_design,
