@@ -31,7 +31,7 @@ from ..requests.base import UNIT
 from ..requests.charts import ANY_STITCHES, IS_REPEAT
 from ..requests.faults import OF_VALUES, problem_in_words, remedy_in_words
 from ..requests.uploads import UploadedFile
-from .options import chart_file, is_fabric, resolve_chart, show_notes, stitches_in, stitches_of
+from .options import chart_file, is_fabric, resolve_chart, show_notes, stitches_of
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
@@ -184,8 +184,6 @@ def _chart_input(model: type[BaseModel]) -> Input:
         if size is None and (any_stitches or "outline" in model.model_fields):
             with chart_file(text) as file:
                 if file is not None:
-                    if any_stitches and (stitches := stitches_in(file)) is not None:
-                        return {"chart": stitches.text}
                     from ..operations.files.imports import design_in  # a repeat needs no readers
 
                     design, notes = design_in(file)

@@ -17,7 +17,7 @@ from knitcore.chart.fabric import Fabric
 from knitcore.chart.patterns import PATTERNS
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.chart.stitch_kinds import BY_CODE
-from knitcore.chart.symbol_chart import CODE, SymbolChart
+from knitcore.chart.symbol_chart import CODE, SymbolChart, knits_and_purls
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -156,6 +156,8 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     named = _chart_of_name(chart)
     signs = set(chart)
     if named is None and not (signs & STITCHES and signs <= STITCHES | SEPARATORS):
+        if (stitches := stitches_of(chart)) is not None:
+            knits_and_purls(stitches)
         raise _no_chart(chart)
     cloth = StitchChart.parse(chart.replace("/", "\n")) if named is None else named
     if size is not None:
@@ -168,23 +170,6 @@ def resolve_chart(chart: str, size: str | None, *, is_repeat: bool = False) -> S
     if named is not None and not is_repeat:
         raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
     return cloth if named is None else cloth.repeat()
-
-
-def stitches_in(file: Path) -> SymbolChart | None:
-    """The chart of a file if it has other stitches than knit and purl.
-
-    Raises
-    ------
-    InputError
-        If it has, and does not balance.
-    """
-    from knitcore.formats.read.chart_files import has_other_stitches, read_noted_stitches
-
-    if not has_other_stitches(file):
-        return None
-    stitches, notes = read_noted_stitches(file)
-    show_notes(notes)
-    return stitches if isinstance(stitches, SymbolChart) else SymbolChart.of(stitches)
 
 
 def stitches_of(chart: str) -> SymbolChart | None:

@@ -6,7 +6,7 @@ from pydantic import BaseModel, Discriminator, Field, Tag
 
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
-from knitcore.chart.symbol_chart import SymbolChart, as_stitches
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches, plain_chart
 from knitcore.garment.shaped import outline_marks
 
 from .base import RequestModel
@@ -132,7 +132,7 @@ def to_chart(chart: ChartInput) -> StitchChart:
     """The chart of a request."""
     if isinstance(chart, PureFabricChart):
         return StitchChart.of_fabric(chart.fabric, rows=chart.rows, columns=chart.columns)
-    return StitchChart.parse(chart)
+    return plain_chart(chart)
 
 
 def to_stitches(chart: AnyChartInput) -> StitchChart | SymbolChart:
@@ -144,4 +144,4 @@ def to_repeat(chart: ChartInput) -> StitchChart:
     """The repeat of a request: the chart itself, or a pure fabric's own repeat."""
     if isinstance(chart, PureFabricChart):
         return StitchChart.of_fabric(chart.fabric).repeat()
-    return StitchChart.parse(chart)
+    return plain_chart(chart)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from numbers import Integral
 
 import numpy as np
+from numpy.typing import NDArray
 
 from knitcore.base import showing
 from knitcore.base.arrays import Mask
@@ -210,7 +211,7 @@ class StitchChart:
         >>> StitchChart.of_fabric("rib", rows=6, columns=8).repeat().text
         'KP'
         """
-        return StitchChart(self.purl[: _period(self.purl), : _period(self.purl.T)])
+        return StitchChart(self.purl[: period(self.purl), : period(self.purl.T)])
 
     def canonical(self) -> StitchChart:
         """One repeat for all charts of the same fabric: shifted, mirrored, or seen from the back.
@@ -239,7 +240,7 @@ class StitchChart:
         repeat is seen only if it occurs twice; otherwise that direction keeps its full length.
         """
         return StitchChart(
-            self.purl[: _period(self.purl, cut=True), : _period(self.purl.T, cut=True)]
+            self.purl[: period(self.purl, cut=True), : period(self.purl.T, cut=True)]
         )
 
     def __eq__(self, other: object) -> bool:
@@ -339,7 +340,7 @@ def size_in_words(columns: int, rows: int) -> str:
     return " x ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts)
 
 
-def _period(grid: Mask, *, cut: bool = False) -> int:
+def period(grid: Mask | NDArray[np.int16], *, cut: bool = False) -> int:
     """Smallest period along axis 0 (one that occurs twice, if it may be cut; else a divisor)."""
     n = int(grid.shape[0])
     periods = (p for p in range(1, n // 2 + 1) if cut or n % p == 0)

@@ -20,6 +20,7 @@ from knitcore.chart.stitch_chart import (
     as_chart,
     check_chart_size,
     is_name_of_fabric,
+    period,
 )
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import (
@@ -103,7 +104,7 @@ class SymbolChart:
         'KP\\nPK'
         """
         check_kind("chart", text, str, "Give rows of stitches such as 'O/KK;KKKK'.")
-        if _is_plain(text):
+        if _is_plain_text(text):
             return cls.of(StitchChart.parse(text))
         lines = _lines(text)
         rows = [row for line in lines for row in line.lstrip("\ufeff").split(";") if row.strip()]
@@ -229,6 +230,14 @@ class SymbolChart:
         check_chart_size(self.rows * down, self.columns * across)
         return SymbolChart(np.tile(self.cells, (down, across)))
 
+    def repeat_cut(self) -> SymbolChart:
+        """The smallest repeat whose periodic continuation, cut anywhere, gives this chart.
+
+        As :meth:`StitchChart.repeat_cut`; it begins and ends between stitches.
+        """
+        rows, columns = (period(grid, cut=True) for grid in (self.cells, self.cells.T))
+        return SymbolChart(self.cells[:rows, :columns])
+
     def mirror(self) -> SymbolChart:
         """The chart reflected left to right: a right cross becomes a left one."""
         return self._reflected({place: s.mirrored for place, s in self._kinds().items()})
@@ -276,7 +285,7 @@ def as_stitches(chart: StitchChart | SymbolChart | str) -> StitchChart | SymbolC
     """
     if isinstance(chart, StitchChart):
         return chart
-    if isinstance(chart, str) and (is_name_of_fabric(chart) or _is_plain(chart)):
+    if isinstance(chart, str) and (is_name_of_fabric(chart) or _is_plain_text(chart)):
         return as_chart(chart)
     symbols = chart if isinstance(chart, SymbolChart) else SymbolChart.parse(chart)
     return symbols.plain if symbols.is_plain else symbols
@@ -284,11 +293,6 @@ def as_stitches(chart: StitchChart | SymbolChart | str) -> StitchChart | SymbolC
 
 def _lines(text: str) -> list[str]:
     return [line for line in text.splitlines() if not line.lstrip().startswith("#")]
-
-
-def _is_plain(text: str) -> bool:
-    """Say whether a text has nothing but knits and purls."""
-    return set("".join(_lines(text))) <= _PLAIN
 
 
 def knits_and_purls(chart: StitchChart | SymbolChart) -> StitchChart:
@@ -311,6 +315,44 @@ def knits_and_purls(chart: StitchChart | SymbolChart) -> StitchChart:
         "takes knits and purls only.",
         "Use knit and purl, or `predict`, which takes every stitch.",
     )
+
+
+def plain_chart(text: str) -> StitchChart:
+    """Read rows of K and P, and refuse other stitches by their names.
+
+    Raises
+    ------
+    InputError
+        As :meth:`StitchChart.parse` and :func:`knits_and_purls`.
+    """
+    try:
+        return StitchChart.parse(text)
+    except InputError:
+        stitches = stitches_in_text(text)
+        if stitches is None:
+            raise
+    return knits_and_purls(stitches)
+
+
+def stitches_in_text(text: str) -> SymbolChart | None:
+    """The chart of a text of codes of stitches; None if it has other signs, or only K, P and /.
+
+    Raises
+    ------
+    InputError
+        As :meth:`SymbolChart.parse`, where rows of such codes make no chart.
+    """
+    codes = {_ALIASES.get(code, code) for code in CODE.findall("".join(_lines(text)))} - {
+        ";",
+        "\ufeff",
+    }
+    has_others = bool(codes - {"K", "P", "/"})
+    return SymbolChart.parse(text) if has_others and codes <= BY_CODE.keys() else None
+
+
+def _is_plain_text(text: str) -> bool:
+    """Say whether a text has the signs of knits and purls alone, and those between them."""
+    return set("".join(_lines(text))) <= _PLAIN
 
 
 def _as_cells(cells: ArrayLike) -> Cells:

@@ -11,6 +11,7 @@ from knitcore.base.arrays import Indices, Mask, runs
 from knitcore.base.errors import InputError
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
 from knitcore.garment.shaped import ShapedChart
 from knitcore.prediction.size import RelaxedSize
 
@@ -78,9 +79,15 @@ class Piece(Result):
         return cls(shaped, (yarn,), np.zeros(shaped.stitch.shape, dtype=np.intp))
 
     @classmethod
-    def of(cls, chart: StitchChart | Piece) -> Piece:
-        """The piece itself, or a chart as a piece of one yarn."""
-        return chart if isinstance(chart, Piece) else cls.plain(chart)
+    def of(cls, chart: StitchChart | SymbolChart | Piece) -> Piece:
+        """The piece itself, or a chart as a piece of one yarn.
+
+        Raises
+        ------
+        InputError
+            If the chart has other stitches than knits and purls.
+        """
+        return chart if isinstance(chart, Piece) else cls.plain(knits_and_purls(chart))
 
     @property
     def chart(self) -> StitchChart:

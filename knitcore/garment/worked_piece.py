@@ -12,6 +12,8 @@ import numpy as np
 from knitcore.base.errors import InputError
 from knitcore.chart.row_sides import Construction, Side, side_of_row
 from knitcore.chart.stitch_chart import StitchChart, check_chart_size
+from knitcore.chart.stitch_kinds import BY_CODE, STITCHES
+from knitcore.chart.symbol_chart import CONTINUED, SymbolChart
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 
@@ -25,14 +27,15 @@ class PieceRow:
     side : which side faces the knitter.
     first, last : stitches that the row gains (or, negative, loses) where it begins and ends,
         against the row below.
-    purls : for each stitch in working order, whether the knitter purls it.
-    yarns : for each stitch in working order, the index of its yarn.
+    stitches : what the knitter works, in order: places in
+        :data:`knitcore.chart.stitch_kinds.STITCHES`, of which False is a knit and True a purl.
+    yarns : for each column in working order, the index of its yarn.
     """
 
     side: Side
     first: int
     last: int
-    purls: tuple[bool, ...]
+    stitches: tuple[int, ...]
     yarns: tuple[int, ...]
 
 
@@ -53,7 +56,7 @@ def piece_rows(
     Examples
     --------
     >>> garter = piece_rows(StitchChart.of_fabric("garter", rows=4, columns=3))
-    >>> {row.purls for row in garter}
+    >>> {row.stitches for row in garter}
     {(False, False, False)}
 
     Raises
@@ -82,6 +85,74 @@ def piece_rows(
     return tuple(rows)
 
 
+def symbol_rows(
+    chart: SymbolChart,
+    construction: Construction = Construction.FLAT,
+    *,
+    first_side: Side = Side.RS,
+) -> tuple[PieceRow, ...]:
+    """Work a chart of any stitches out row by row, as :func:`piece_rows` does.
+
+    Examples
+    --------
+    >>> lace = symbol_rows(SymbolChart.parse("O)K"), first_side=Side.WS)
+    >>> [STITCHES[stitch].words for stitch in lace[0].stitches]
+    ['yo', 'k2tog', 'p']
+    """
+    first = Side.RS if construction is Construction.ROUND else first_side
+    rows = []
+    for index, line in enumerate(chart.cells):
+        side = side_of_row(index, construction, first)
+        faces = [int(place) for place in line if place != CONTINUED]
+        worked = faces[::-1] if side is Side.RS else map(_from_behind, faces)
+        rows.append(PieceRow(side, 0, 0, tuple(worked), (0,) * chart.columns))
+    return tuple(rows)
+
+
+def all_rows(
+    chart: StitchChart | Piece | SymbolChart,
+    construction: Construction = Construction.FLAT,
+    *,
+    first_side: Side = Side.RS,
+) -> tuple[PieceRow, ...]:
+    """Work out a piece or a chart of any kind.
+
+    Raises
+    ------
+    InputError
+        As :func:`piece_rows`.
+    """
+    if isinstance(chart, SymbolChart):
+        return symbol_rows(chart, construction, first_side=first_side)
+    return piece_rows(chart, construction, first_side=first_side)
+
+
+def symbols_from_rows(rows: Sequence[PieceRow]) -> SymbolChart:
+    """Make the chart of rows of any stitches; the inverse of :func:`symbol_rows`.
+
+    Raises
+    ------
+    InputError
+        If rows do not follow each other; as :class:`SymbolChart`.
+    """
+    columns = len(rows[0].yarns)
+    cells = []
+    for number, row in enumerate(rows, start=1):
+        rs = row.side is Side.RS
+        faces = row.stitches[::-1] if rs else map(_from_behind, row.stitches)
+        line = [at for place in faces for at in (place, *[CONTINUED] * (STITCHES[place].width - 1))]
+        if len(line) != columns:
+            problem = f"row {number} has {len(line)} stitches, {columns} are on the needle."
+            raise InputError("rows", problem, "Correct the row.")
+        cells.append(line)
+    return SymbolChart(np.array(cells, dtype=np.int16))
+
+
+def _from_behind(place: int) -> int:
+    """The stitch whose back is this one."""
+    return BY_CODE[STITCHES[place].turned_over.code]
+
+
 def _check_rounds(rows: Sequence[PieceRow]) -> None:
     for number, row in enumerate(rows, start=1):
         if len(set(row.yarns)) > 1:
@@ -103,16 +174,16 @@ def piece_from_rows(rows: Sequence[PieceRow], yarns: Sequence[PieceYarn]) -> Pie
         If rows do not follow each other, or the outline is in several parts.
     """
     spans: list[tuple[int, int]] = []
-    left, right = 0, len(rows[0].purls)
+    left, right = 0, len(rows[0].stitches)
     for row in rows:
         gains = (row.last, row.first) if row.side is Side.RS else (row.first, row.last)
         left, right = left - gains[0], right + gains[1]
         spans.append((left, right))
     for number, ((start, stop), row) in enumerate(zip(spans, rows, strict=True), start=1):
-        if stop - start != len(row.purls):
+        if stop - start != len(row.stitches):
             raise InputError(
                 "rows",
-                f"row {number} has {len(row.purls)} stitches, {stop - start} are on the needle.",
+                f"row {number} has {len(row.stitches)} stitches, {stop - start} are on the needle.",
                 "Correct the row.",
             )
     offset = min(start for start, _ in spans)
@@ -123,7 +194,7 @@ def piece_from_rows(rows: Sequence[PieceRow], yarns: Sequence[PieceYarn]) -> Pie
     for index, ((start, stop), row) in enumerate(zip(spans, rows, strict=True)):
         place = slice(start - offset, stop - offset)
         rs = row.side is Side.RS
-        worked = np.array(row.purls)
+        worked = np.array(row.stitches)
         purl[index, place] = worked[::-1] if rs else ~worked
         yarn_of[index, place] = row.yarns[::-1] if rs else row.yarns
         stitch[index, place] = True

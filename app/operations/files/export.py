@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field
 from knitcore.base.extensions import IDENTIFIER
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart, check_stitches, size_in_words
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.designs.layout import DesignLayout
 from knitcore.formats.write.chart_key import Symbols
 from knitcore.formats.write.export import ExportedFile, ExportKind, ExportOptions, export_chart
@@ -18,7 +19,7 @@ from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import ResultModel
-from ...requests.charts import ChartInput, MaterialName, to_chart
+from ...requests.charts import AnyChartInput, MaterialName, to_stitches
 from ...requests.fabrics import Gauged, LawsRequest, YarnPerStitch
 from ...requests.uploads import Content
 from ..registry import Command, Operation
@@ -41,7 +42,7 @@ class ExportRequest(DesignLayout, Gauged, LawsRequest):
 
     model_config = ConfigDict(extra="forbid")
 
-    chart: ChartInput
+    chart: AnyChartInput
     to: ExportKind | ExtensionName = Field(
         description=f"{', '.join(ExportKind)}; or a format of an installed extension."
     )
@@ -104,9 +105,11 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
     InputError
         If the chart is too large for this format here.
     """
-    chart = to_chart(request.chart)
+    chart = to_stitches(request.chart)
     if limit := MAX_STITCHES.get(request.to):
-        check_stitches(chart.stitches, limit, instead=f" for {request.to}, or the command line")
+        check_stitches(
+            chart.rows * chart.columns, limit, instead=f" for {request.to}, or the command line"
+        )
     file = _export(chart, request, context)
     kept = "".join(c if c.isalnum() or c in " -_." else "-" for c in request.name).strip(" .")
     return ExportResult(
@@ -117,7 +120,9 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
     )
 
 
-def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
+def _export(
+    chart: StitchChart | SymbolChart, request: ExportRequest, context: Context
+) -> ExportedFile:
     mm = request.yarn_per_stitch_mm
     options = request.pass_to(
         ExportOptions, layout=request, gauge=request.relaxed_size,
@@ -126,7 +131,7 @@ def _export(chart: StitchChart, request: ExportRequest, context: Context) -> Exp
     return export_chart(chart, request.to, context.material(request.material), options)
 
 
-def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
+def _facts(chart: StitchChart | SymbolChart, file: ExportedFile) -> ExportFacts:
     return ExportFacts.of(file, rows=chart.rows, columns=chart.columns, bytes=len(file.content))
 
 
@@ -136,7 +141,7 @@ def _command(request: ExportRequest, context: Context, out: Path) -> ExportFacts
         request = request.model_copy(update={"name": out.stem or "Untitled"})
     if request.machine is not None:
         request = request.model_copy(update={"machine": machine_text(request.machine)})
-    chart = to_chart(request.chart)
+    chart = to_stitches(request.chart)
     file = _export(chart, request, context)
     out.write_bytes(file.content)
     return _facts(chart, file)

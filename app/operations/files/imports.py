@@ -7,15 +7,11 @@ from pydantic import Field, RootModel
 
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches
 from knitcore.formats.designs.design_file import design_schema as schema_of_designs
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.designs.layout import DesignLayout, layout_notes, layout_of
-from knitcore.formats.read.chart_files import (
-    Aspect,
-    PictureReading,
-    has_other_stitches,
-    read_noted_piece,
-)
+from knitcore.formats.read.chart_files import Aspect, PictureReading, is_design, read_any_stitches
 
 from ...context import Context
 from ...requests.base import NoRequest, RequestModel, ResultModel
@@ -87,13 +83,15 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
     """
     with stored([request.file]) as (path,):
         design, notes = design_in(path, _reading(request, context))
-    chart = StitchChart.parse(design.chart)
+    chart = as_stitches(design.chart)
+    if isinstance(chart, StitchChart):
+        notes = (*notes, *layout_notes(chart, design))
     return ImportResult(
         **dict(design),
         rows=chart.rows,
         columns=chart.columns,
         repeat=chart.repeat_cut().key,
-        notes=[*notes, *layout_notes(chart, design)],
+        notes=list(notes),
     )
 
 
@@ -124,11 +122,13 @@ def design_in(
     InputError
         If it holds no chart.
     """
-    if path.suffix.lower() == ".json" and not has_other_stitches(path):
+    if is_design(path):
         design = read_design(path)
-        return ImportedDesign.of(design, chart=design.to_chart().text), ()
-    content = read_noted_piece(path, reading)
-    piece, notes = content.piece, content.notes
+        return ImportedDesign.of(design, chart=design.to_stitches().text), ()
+    read = read_any_stitches(path, reading)
+    piece, notes = read.content, read.notes
+    if isinstance(piece, SymbolChart):
+        return ImportedDesign(chart=piece.text), notes
     if not piece.is_plain:
         outline = "" if piece.is_rectangle else "an outline, and "
         yarns = ", ".join(yarn.name for yarn in piece.yarns)

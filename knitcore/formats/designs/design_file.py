@@ -19,6 +19,7 @@ from pydantic import ConfigDict, Field, ValidationError
 from knitcore.base.errors import InputError
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches, plain_chart
 from knitcore.formats.designs.layout import MAX_TEXT, DesignLayout, check_layout, piece_of
 from knitcore.garment.piece import Piece
 
@@ -44,7 +45,10 @@ class DesignFile(DesignLayout):
         pattern=r"^[^\x00-\x1f]+$",
         description="Library id or name of a material file.",
     )
-    chart: str = Field(max_length=MAX_TEXT, description="K/P lines, the top row first, face side.")
+    chart: str = Field(
+        max_length=MAX_TEXT,
+        description="K/P lines, or those of other stitches, the top row first, face side.",
+    )
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$")
 
     def to_piece(self) -> Piece:
@@ -52,8 +56,12 @@ class DesignFile(DesignLayout):
         return piece_of(self.to_chart(), self)
 
     def to_chart(self) -> StitchChart:
-        """The chart itself."""
-        return StitchChart.parse(self.chart)
+        """The chart itself, of knits and purls."""
+        return plain_chart(self.chart)
+
+    def to_stitches(self) -> StitchChart | SymbolChart:
+        """The chart itself, of any stitches."""
+        return as_stitches(self.chart)
 
 
 def write_design(design: DesignFile) -> str:
@@ -105,8 +113,28 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise InputError(where, f"{name}: {first['msg']}.", "Correct or export it again.") from None
-    check_layout(design.to_chart(), design)
+    stitches = design.to_stitches()
+    if isinstance(stitches, SymbolChart):
+        check_bare(design)
+    else:
+        check_layout(stitches, design)
     return design
+
+
+def check_bare(design: DesignLayout) -> None:
+    """Refuse an outline and yarns, which belong to charts of knits and purls.
+
+    Raises
+    ------
+    InputError
+    """
+    for field in ("outline", "regions", "repeats"):
+        if getattr(design, field):
+            raise InputError(
+                field,
+                "a chart with lace, cables, tucks or slipped stitches has none yet.",
+                "Leave it out, or give a chart of K and P.",
+            )
 
 
 def design_schema() -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from knitcore.base.errors import InputError
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.chart.symbol_chart import SymbolChart, as_stitches, knits_and_purls
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches, stitches_in_text
 from knitcore.formats.designs.design_file import read_design
 from knitcore.formats.read.parent_loops import is_parent_loops, read_parent_loops
 from knitcore.formats.read.text_chart import read_text_chart
@@ -38,6 +38,25 @@ class PieceInFile:
     def chart(self) -> StitchChart:
         """The face grid."""
         return self.piece.chart
+
+
+@dataclass(frozen=True)
+class StitchesInFile:
+    """The content of a file that may have other stitches than knits and purls.
+
+    Attributes
+    ----------
+    content : a piece of knits and purls, or a chart that has other stitches.
+    notes : as those of :class:`PieceInFile`.
+    """
+
+    content: Piece | SymbolChart
+    notes: tuple[str, ...] = ()
+
+    @property
+    def stitches(self) -> StitchChart | SymbolChart:
+        """The chart."""
+        return self.content.chart if isinstance(self.content, Piece) else self.content
 
 
 class Aspect(StrEnum):
@@ -88,12 +107,8 @@ def read_noted_chart(path: str | Path) -> tuple[StitchChart, tuple[str, ...]]:
         As :func:`read_noted_piece`, but for an outline in several parts.
     """
     file = Path(path)
-    if file.suffix.lower() == ".json":
-        text, notes = _text(_checked(file))
-        if is_parent_loops(text):
-            chart, said = read_parent_loops(text)
-            return knits_and_purls(chart), (*notes, *said)
-        return read_design(file).to_chart(), ()
+    if is_design(file):
+        return read_design(_checked(file)).to_chart(), ()
     content = read_noted_piece(file)
     return content.chart, content.notes
 
@@ -112,17 +127,16 @@ def read_noted_stitches(path: str | Path) -> tuple[StitchChart | SymbolChart, tu
     InputError
         As :func:`read_noted_chart`.
     """
-    file = _checked(Path(path))
-    if has_other_stitches(file):
-        text, notes = _text(file)
-        chart, said = read_parent_loops(text)
-        return as_stitches(chart), (*notes, *said)
-    return read_noted_chart(file)
+    file = Path(path)
+    if is_design(file):
+        return read_design(_checked(file)).to_stitches(), ()
+    read = read_any_stitches(file)
+    return read.stitches, read.notes
 
 
-def has_other_stitches(file: Path) -> bool:
-    """Tell whether a file may have other stitches than knit and purl."""
-    return file.suffix.lower() == ".json" and is_parent_loops(_text(file)[0])
+def is_design(file: Path) -> bool:
+    """Tell whether a file is a design by its name, and not loops with their parents."""
+    return file.suffix.lower() == ".json" and not is_parent_loops(_text(_checked(file))[0])
 
 
 @in_reading_time
@@ -139,13 +153,29 @@ def read_noted_piece(path: str | Path, reading: PictureReading | None = None) ->
     Raises
     ------
     InputError
+        If the file is missing, too large, of another kind, has other stitches than knits and
+        purls, or its content does not match its name.
+    """
+    read = read_any_stitches(path, reading)
+    return PieceInFile(Piece.of(read.content), read.notes)
+
+
+@in_reading_time
+def read_any_stitches(path: str | Path, reading: PictureReading | None = None) -> StitchesInFile:
+    """Read a piece of knits and purls, or a chart that has other stitches.
+
+    Parameters are those of :func:`read_noted_piece`.
+
+    Raises
+    ------
+    InputError
         If the file is missing, too large, of another kind, or its content does not match its name.
     """
     file = _checked(Path(path))
     if file.suffix.lower() in _PICTURES:
         from knitcore.formats.read.picture import read_picture  # needs Pillow
 
-        return PieceInFile(*read_picture(file, reading))
+        return StitchesInFile(*read_picture(file, reading))
     return _READERS[file.suffix.lower()](file)
 
 
@@ -167,7 +197,7 @@ def _checked(file: Path) -> Path:
     return file
 
 
-def _read_text(file: Path) -> PieceInFile:
+def _read_text(file: Path) -> StitchesInFile:
     text, notes = _text(file)
     if looks_like_program(text):
         return _read_knitout(file)
@@ -175,31 +205,37 @@ def _read_text(file: Path) -> PieceInFile:
         return _read_design(file)
     if looks_written(text):
         piece, said = read_noted_rows(text)
-        return PieceInFile(piece, (*notes, *said))
+        return StitchesInFile(piece, (*notes, *said))
+    if (stitches := stitches_in_text(text)) is not None:
+        return StitchesInFile(stitches, notes)
     chart, said = read_text_chart(text)
-    return PieceInFile(Piece.plain(chart), (*notes, *said))
+    return StitchesInFile(Piece.plain(chart), (*notes, *said))
 
 
-def _read_rows(file: Path) -> PieceInFile:
+def _read_rows(file: Path) -> StitchesInFile:
     text, notes = _text(file)
     piece, said = read_noted_rows(text)
-    return PieceInFile(piece, (*notes, *said))
+    return StitchesInFile(piece, (*notes, *said))
 
 
-def _read_design(file: Path) -> PieceInFile:
+def _read_design(file: Path) -> StitchesInFile:
     text, notes = _text(file)
     if is_parent_loops(text):
         chart, said = read_parent_loops(text)
-        return PieceInFile(Piece.plain(knits_and_purls(chart)), (*notes, *said))
-    return PieceInFile(read_design(file).to_piece())
+        content = as_stitches(chart)
+        piece = Piece.plain(content) if isinstance(content, StitchChart) else content
+        return StitchesInFile(piece, (*notes, *said))
+    design = read_design(file)
+    stitches = design.to_stitches()
+    return StitchesInFile(stitches if isinstance(stitches, SymbolChart) else design.to_piece())
 
 
-def _read_knitout(file: Path) -> PieceInFile:
+def _read_knitout(file: Path) -> StitchesInFile:
     from knitcore.formats.read.knitout_reader import knitted_chart
 
     text, notes = _text(file)
     knitted = knitted_chart(text)
-    return PieceInFile(knitted.piece, (*notes, *knitted.notes))
+    return StitchesInFile(knitted.piece, (*notes, *knitted.notes))
 
 
 def _text(file: Path) -> tuple[str, tuple[str, ...]]:
@@ -221,7 +257,7 @@ def _text(file: Path) -> tuple[str, tuple[str, ...]]:
     return text, ()
 
 
-_READERS: dict[str, Callable[[Path], PieceInFile]] = {
+_READERS: dict[str, Callable[[Path], StitchesInFile]] = {
     ".txt": _read_text,
     ".ks": _read_rows,
     ".json": _read_design,

@@ -15,8 +15,10 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 from knitcore.base.arrays import Array, Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
+from knitcore.chart.stitch_kinds import BY_CODE, STITCHES
+from knitcore.chart.symbol_chart import CONTINUED, SymbolChart
 from knitcore.formats.read.chart_files import Aspect, PictureReading
-from knitcore.formats.write.png import TEXT_KEY
+from knitcore.formats.write.png import STITCHES_KEY, TEXT_KEY
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 
@@ -45,8 +47,8 @@ _PLAIN_LIGHT, _PLAIN_DARK = 170.0, 84.0
 
 def read_picture(
     file: Path, reading: PictureReading | None = None
-) -> tuple[Piece, tuple[str, ...]]:
-    """The piece of a picture, and notes on how it was read.
+) -> tuple[Piece | SymbolChart, tuple[str, ...]]:
+    """The piece of a picture, or its chart of other stitches, and notes on how it was read.
 
     Raises
     ------
@@ -59,7 +61,12 @@ def read_picture(
             text = image.info.get(TEXT_KEY)
             if isinstance(text, str) and image.mode == "P" and reading is None:
                 return _own(np.asarray(image)[::-1].astype(np.intp), text, file.name), ()
+            codes = image.info.get(STITCHES_KEY)
+            if isinstance(codes, str) and image.mode == "P" and reading is None:
+                return _own_stitches(np.asarray(image)[::-1].astype(np.intp), codes, file.name), ()
             notes = list(_lost(image, has_yarns=isinstance(text, str)))
+            if isinstance(codes, str):
+                notes.append("Its stitches other than knits and purls are lost.")
             is_own = image.mode == "1" or isinstance(text, str)
             is_drawn = image.format == "JPEG"
             colours, is_clear = _colours(ImageOps.exif_transpose(image))
@@ -388,9 +395,31 @@ def _name(colour: Array) -> str:
     return "#" + "".join(f"{min(max(round(float(c)), 0), 255):02x}" for c in colour)
 
 
+def _damaged(name: str) -> InputError:
+    return InputError("chart", f"{name} is damaged.", "Export it again as PNG.")
+
+
+def _own_stitches(index: Indices, text: str, name: str) -> SymbolChart:
+    """The chart of other stitches of a picture that this library wrote."""
+    try:
+        kinds = [BY_CODE[code] for code in json.loads(text)]
+    except (ValueError, TypeError, KeyError):
+        raise _damaged(name) from None
+    check_chart_size(*index.shape)
+    if index.max() >= len(kinds):
+        raise _damaged(name)
+    cells = np.full(index.shape, CONTINUED, dtype=np.int16)
+    for row, line in enumerate(index):
+        column = 0
+        while column < len(line):
+            cells[row, column] = kinds[line[column]]
+            column += STITCHES[cells[row, column]].width
+    return SymbolChart(cells)
+
+
 def _own(index: Indices, text: str, name: str) -> Piece:
     """The piece of a picture that this library wrote."""
-    damaged = InputError("chart", f"{name} is damaged.", "Export it again as PNG.")
+    damaged = _damaged(name)
     try:
         yarns = tuple(PieceYarn(str(yarn), str(colour)) for yarn, colour in json.loads(text))
     except (ValueError, TypeError):

@@ -24,7 +24,12 @@ _EVERY = (
     r"(?:all|every|each)\s(?:(?:other|alternate|alt|following|foll|subsequent|remaining)\s)*"
     r"(?P<every>even|odd|RS|WS|right[- ]side|wrong[- ]side)?(?:[- ]numbered)?\s?"
 )
-_STITCH = r"(?=[*\[(]|[kp]\s?\d|[kp]\b|knit\b|purl\b)"
+_OTHER = (
+    r"yo\b|yfwd\b|yrn\b|yon\b|sl\s?\d|sk2p|skp|ss+[kp]\b|s2[kp]|cdd\b|tuck\b|(?:c|t|cr)\d+[bfrl]\b"
+    r"|\d/\d\s?[rl]p?[ct]\b|[rl]t\b|[kp]\d?tbl\b"
+)
+"""How a stitch begins that is neither a knit nor a purl."""
+_STITCH = rf"(?=[*\[(]|[kp]\s?\d|[kp]\b|knit\b|purl\b|{_OTHER})"
 _ROW_BEGINS = (
     # Row 1 (RS): …, Rows 2 and 4-6: …, Row 2 and all even rows: …, R1[WS] - …
     re.compile(
@@ -51,7 +56,9 @@ _ROW_BEGINS = (
     re.compile(r"(?P<side>RS|WS)\s?:", _I),
 )
 _BARE = re.compile(rf"(?P<numbers>\d{{1,4}}){_SIDE}\s?[.:)]\s", _I)
-_BODY = re.compile(r"(?=.*(?:\d|,|knit|purl))[*\[(]?\s?(?:[kp]\s?\d|[kp]\s?,|knit\b|purl\b)", _I)
+_BODY = re.compile(
+    rf"(?=.*(?:\d|,|knit|purl))[*\[(]?\s?(?:[kp]\s?\d|[kp]\s?,|knit\b|purl\b|{_OTHER})", _I
+)
 _CAST_ON = re.compile(
     r"\b(?:cast[- ]?on|co)(?![a-z])\s?:?\s?(\d{1,4}|[a-z]+)\b"
     r"(\s?(?:[(\[{]\s?\d+(?! ?st)|[/,:–-]\s?\d))?",
@@ -111,7 +118,7 @@ _KEPT = re.compile(
     r"|(?:[kp]\s?\d*|knit|purl)(?:\s?[,;]\s?(?:[kp]\s?\d*|knit|purl))*)\s?\)",
     _I,
 )
-_STITCHES = re.compile(r"\(\s?[*\[(]?\s?(?:[kp]\s?\d|[kp]\b|knit|purl|ss[kp]|m1|yo|sl)", _I)
+_STITCHES = re.compile(rf"\(\s?[*\[(]?\s?(?:[kp]\s?\d|[kp]\b|knit|purl|m1|yo|sl|{_OTHER})", _I)
 _REMARK = re.compile(r"(?:^|\s)(?://|#(?![0-9a-f]{6}\b)).*", _I)
 _SIDE_FIRST = re.compile(r"(\((?:RS|WS)\)):? ((?:and|&) (?:all|every|each) [^:(]*)", _I)
 MAX_LINES = 20_000

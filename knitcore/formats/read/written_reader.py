@@ -7,7 +7,8 @@ out. See :mod:`knitcore.formats.write.written_pattern` and :mod:`knitcore.format
 for examples.
 """
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,9 @@ import numpy as np
 from knitcore.base.errors import InputError
 from knitcore.chart.row_sides import Construction, Side, side_of_row
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, check_chart_size
+from knitcore.chart.stitch_kinds import BY_CODE, STITCHES
+from knitcore.chart.stitch_words import OPEN_TO_READING, SLIP
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.read.written_lines import (
     PatternLines,
     RepeatLine,
@@ -25,9 +29,17 @@ from knitcore.formats.read.written_lines import (
     row_of,
     times_in,
 )
-from knitcore.formats.read.written_words import Line, RowWords, Work, is_ambiguous, read_row
+from knitcore.formats.read.written_words import (
+    Line,
+    RowWords,
+    Work,
+    is_ambiguous,
+    keeps_count,
+    left,
+    read_row,
+)
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
-from knitcore.garment.worked_piece import PieceRow, piece_from_rows
+from knitcore.garment.worked_piece import PieceRow, piece_from_rows, symbols_from_rows
 
 __all__ = ["looks_written", "read_noted_rows", "read_piece_rows", "read_rows"]
 
@@ -60,6 +72,26 @@ def read_rows(text: str) -> StitchChart:
     return piece.chart
 
 
+def read_stitch_rows(text: str) -> SymbolChart:
+    """The chart of written instructions for a rectangle of any stitches.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_rows`.
+
+    Examples
+    --------
+    >>> print(read_stitch_rows("Row 1 (RS): [K2tog, yo] twice. Row 2: P3, sl1."))
+    KKKV
+    O/O/
+    """
+    content = read_noted_rows(text)[0]
+    if isinstance(content, SymbolChart):
+        return content
+    return SymbolChart.of(read_rows(text))
+
+
 def read_piece_rows(text: str) -> Piece:
     """The chart, the outline and the yarns of written instructions.
 
@@ -68,11 +100,12 @@ def read_piece_rows(text: str) -> Piece:
     InputError
         As :func:`read_rows`.
     """
-    return read_noted_rows(text)[0]
+    return Piece.of(read_noted_rows(text)[0])
 
 
-def read_noted_rows(text: str) -> tuple[Piece, tuple[str, ...]]:
-    """The piece of written instructions, and notes on what was left out or taken as one of several.
+def read_noted_rows(text: str) -> tuple[Piece | SymbolChart, tuple[str, ...]]:
+    """The piece, or the chart of other stitches, of written instructions; and notes on what was
+    left out or taken as one of several.
 
     Raises
     ------
@@ -94,6 +127,10 @@ def read_noted_rows(text: str) -> tuple[Piece, tuple[str, ...]]:
         said = "as often as it says in all"
     if is_open:
         notes.append(f'"Repeat from * … times" is worked {said}.')
+    if isinstance(piece, SymbolChart):
+        bodies = "\n".join(row.body for row in pattern.rows if isinstance(row, RowLine))
+        for word, note in OPEN_TO_READING.items():
+            notes += [note] if re.search(word, bodies, re.IGNORECASE) else []
     return piece, tuple(notes)
 
 
@@ -108,7 +145,7 @@ class _Reader:
         self._start = 1
         self._notes: list[str] = []
 
-    def read(self) -> tuple[Piece, list[str]]:
+    def read(self) -> tuple[Piece | SymbolChart, list[str]]:
         for line, name, yarn, colour in self._pattern.yarns:
             self._add_yarn(line, name, PieceYarn(yarn, colour))
         self._construction = self._find_construction()
@@ -286,8 +323,8 @@ class _Reader:
         )
         return count
 
-    def _piece(self, words: list[RowWords], needle: int) -> Piece:
-        rows = []
+    def _piece(self, words: list[RowWords], needle: int) -> Piece | SymbolChart:
+        rows, lines, others = [], [], []
         known: dict[tuple[int, int], Work] = {}
         for number, row in enumerate(words, start=self._start):
             key = id(row), needle
@@ -300,15 +337,41 @@ class _Reader:
                     " chart begins with it."
                 )
                 work = Work(0, 0, work.stitches)
-            needle = len(work.stitches)
-            purls = tuple(stitch.purl for stitch in work.stitches)
-            yarns = tuple(stitch.yarn for stitch in work.stitches)
-            rows.append(PieceRow(self._side(number), work.first, work.last, purls, yarns))
+            needle = left(work.stitches)
+            side = self._side(number)
+            places = tuple(
+                BY_CODE["V" if side is Side.RS else "v"] if s.form == SLIP else s.place
+                for s in work.stitches
+            )
+            yarns = tuple(s.yarn for s in work.stitches for _ in range(s.leaves))
+            rows.append(PieceRow(side, work.first, work.last, places, yarns))
+            lines.append(row.line)
+            others.append(keeps_count(work.stitches) and any(s.form for s in work.stitches))
         end = self._pattern.bound_off
         if end is not None and end[1] not in (None, needle):
             problem = f"it binds off {end[1]} stitches, but {needle} are on the needle."
             raise end[0].wrong(problem, "Correct it.")
-        return piece_from_rows(rows, self._yarns or [MAIN_YARN])
+        if any(others):
+            self._check_rectangle(rows, lines)
+            return symbols_from_rows(rows)
+        purled = [
+            replace(row, stitches=tuple(STITCHES[place].sites[0].purl for place in row.stitches))
+            for row in rows
+        ]
+        return piece_from_rows(purled, self._yarns or [MAIN_YARN])
+
+    def _check_rectangle(self, rows: Sequence[PieceRow], lines: Sequence[Line]) -> None:
+        """Refuse an outline or several yarns beside lace, cables, tucks or slipped stitches."""
+        for row, line in zip(rows, lines, strict=True):
+            if row.first or row.last:
+                raise line.wrong(
+                    "it changes the number of stitches, beside rows of lace, cables, tucks or "
+                    "slipped stitches.",
+                    "Give the part in which all rows have as many stitches.",
+                )
+            if len(self._yarns) > 1:
+                remedy = "Write it in one yarn; knits and purls may have several."
+                raise line.wrong("colours and other stitches than k and p are mixed.", remedy)
 
     def _remarks(self) -> Iterator[str]:
         if self._pattern.remarks:

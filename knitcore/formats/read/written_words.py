@@ -2,7 +2,8 @@
 
 Read are ``k3``, ``k 3``, ``knit 3 sts``, ``knit to last 2 sts``, ``[k1, p1] 4 times`` (also
 ``x 4``, ``twice``, ``to end``; in any bracket, nested), ``*k2, p2; rep from * to last 2 sts, k2``
-and ``*k2, p2* 3 times``; at the edges decreases, ``m1``, casting on and binding off.
+and ``*k2, p2* 3 times``; every stitch of the registry in the words of
+:mod:`knitcore.chart.stitch_words`; at the edges decreases, ``m1``, casting on and binding off.
 """
 
 import re
@@ -13,6 +14,8 @@ import numpy as np
 from knitcore.base.arrays import Indices, Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, check_chart_size
+from knitcore.chart.stitch_kinds import BY_CODE, STITCHES
+from knitcore.chart.stitch_words import SLIP, stitch_in
 from knitcore.garment.piece import yarn_name
 
 MAX_CHARACTERS = 20_000
@@ -39,7 +42,7 @@ _PLAINER = (
     (re.compile(r"([kp]\d{1,4})(?=[kp]\d)", re.IGNORECASE), r"\1 "),
 )
 """Words that make no stitch (``turn``, ``pm``); other spellings (``knit2``, ``2k``, ``k1p1``)."""
-_SHAPED = ("ssk", "ssp", "k2tog", "p2tog", "k3tog", "p3tog", "m1", "m1p")
+_MADE = ("m1", "m1p")
 _TIMES = re.compile(r"(?:[x×](\d{1,5})|(\d{1,5})[x×])", re.IGNORECASE)
 _SIZES = re.compile(r"\(\s*\d+(?:[\s,;/]+\d+)*\s*\)")
 _BRACKETS = {"[": "]", "(": ")", "{": "}"}
@@ -52,22 +55,20 @@ _GAIN_AT_END = re.compile(
 _LOSS_AT_END = re.compile(
     r", bind off the last (\d{1,4}) sts? with a separate strand$", re.IGNORECASE
 )
-_USES = {"": 1, "m1": 0, "m1p": 0, "k3tog": 3, "p3tog": 3}
-"""Stitches of the row below that a stitch takes; all others are decreases of two."""
+_PLAIN_WORDS = set(
+    re.findall("[a-z]+", "k p knit purl rep repeat from to end last st sts and then times twice x")
+)
 _NAMES = (
-    (r"yo.*|yf.*|yrn|yon|o", "a yarn over"),
-    (r".*tbl|[kp]1?b\d?|kb.", "a twisted stitch"),
-    (r"[kp]\d?tog.*|ss+[kp].*|skp.*|sk2p.*|sl.*(psso|p2sso).*|cdd.*|.*\bdec", "a decrease"),
+    (r"[kp]\d?tog.*|.*(psso|p2sso).*|.*\bdec.*", "a decrease that charts do not know"),
     (r"m1.*|m|[kp]fb.*|kf&b|inc.*|.*\binc", "an increase"),
-    (r"sl.*|s\d", "a slipped stitch"),
-    (r"\d+/\d+.*|[ct]\d+.*|[lr][ctp]+\d*.*|.*cable.*", "a cable or a crossing"),
+    (r"\d+/\d+.*|[ct]\d+.*|[lr][ctp]+\d*.*|.*cable.*", "a crossing that charts do not know"),
     (r"mb|.*bobble.*", "a bobble"),
     (r"bo\b.*|co\b.*|bind.*|cast.*", "casting on or binding off within a row"),
     (r"w&t|wrap.*|turn.*", "a short row"),
-    (r"tuck.*|.*below|br.*", "a tuck"),
+    (r".*below|br.*", "a stitch knitted into the row below"),
     (r"dip.*|drop.*", "a dropped or dipped stitch"),
 )
-"""Names of stitches that are neither knits nor purls, and their kinds."""
+"""Names of stitches that charts do not hold, and their kinds."""
 
 
 @dataclass(frozen=True)
@@ -86,16 +87,34 @@ class Line:
 
 @dataclass(frozen=True)
 class WrittenStitch:
-    """A stitch of a row: purled or knitted, how it is made ("" if just worked), of which yarn."""
+    """A stitch of a row as the knitter works it.
 
-    purl: bool
-    form: str = ""
+    Attributes
+    ----------
+    place : in :data:`knitcore.chart.stitch_kinds.STITCHES`.
+    yarn : its number.
+    form : "" for a knit or a purl that is just worked, ``m1`` or ``m1p`` where it is made, else
+        the words of the stitch, or ``slip`` for one that does not say where its yarn is.
+    """
+
+    place: int
     yarn: int = 0
+    form: str = ""
+
+    @property
+    def purl(self) -> bool:
+        """Whether it is purled, for pieces of knits and purls."""
+        return STITCHES[self.place].sites[0].purl
 
     @property
     def uses(self) -> int:
         """Stitches of the row below that it takes."""
-        return _USES.get(self.form, 2)
+        return 0 if self.form in _MADE else STITCHES[self.place].takes
+
+    @property
+    def leaves(self) -> int:
+        """Stitches that it leaves on the needle."""
+        return STITCHES[self.place].width
 
 
 @dataclass(frozen=True)
@@ -113,6 +132,16 @@ Stitches = tuple[WrittenStitch, ...]
 def taken(stitches: Stitches) -> int:
     """Stitches of the row below that these take."""
     return sum(stitch.uses for stitch in stitches)
+
+
+def left(stitches: Stitches) -> int:
+    """Stitches that these leave on the needle."""
+    return sum(stitch.leaves for stitch in stitches)
+
+
+def keeps_count(stitches: Stitches) -> bool:
+    """Say whether these leave as many stitches as they take, and none is made of nothing."""
+    return taken(stitches) == left(stitches) and all(s.form not in _MADE for s in stitches)
 
 
 @dataclass(frozen=True)
@@ -148,13 +177,13 @@ class RowWords:
     @property
     def gain(self) -> int:
         """Stitches that it adds to those on the needle."""
-        return self.first + self.last + sum(len(p.unit) - taken(p.unit) for p in self.parts)
+        return self.first + self.last + sum(left(p.unit) - taken(p.unit) for p in self.parts)
 
     def repeated(self) -> "RowWords":
         """The row as a repeat that fills the needle, unless it already has one."""
-        if not self.is_fixed or any(s.form for part in self.parts for s in part.unit):
-            return self
         unit = sum((part.unit for part in self.parts), ())
+        if not self.is_fixed or not keeps_count(unit):
+            return self
         return RowWords(self.line, self.first, self.last, (RowPart(unit, 0),), self.count)
 
     def fits(self, needles: Indices) -> Mask:
@@ -193,9 +222,9 @@ class RowWords:
                 "Correct the row, or cast on, bind off, increase or decrease at its edges.",
             )
         first, last = _shaped(self.line, stitches, self.first, self.last)
-        if self.count is not None and self.count != len(stitches):
+        if self.count is not None and self.count != left(stitches):
             raise self.line.wrong(
-                f"it says {self.count} sts, but {len(stitches)} are on the needle.",
+                f"it says {self.count} sts, but {left(stitches)} are on the needle.",
                 "Correct the count.",
             )
         return Work(first, last, stitches)
@@ -206,20 +235,22 @@ class RowWords:
             if part.leave is None:
                 stitches += part.unit
                 continue
-            free = room - taken(stitches) - part.leave
-            if free < len(part.unit) or free % len(part.unit):
+            free, size = room - taken(stitches) - part.leave, taken(part.unit)
+            if free < size or free % size:
                 fixed = taken(stitches) + part.leave - self.first - self.last
                 raise self.line.wrong(
-                    f"the {len(part.unit)} stitches that are repeated do not fit {max(free, 0)} "
+                    f"the {size} stitches that are repeated do not fit {max(free, 0)} "
                     "stitches exactly.",
-                    f"Cast on a multiple of {len(part.unit)} plus {fixed} stitches.",
+                    f"Cast on a multiple of {size} plus {fixed} stitches.",
                 )
-            stitches += part.unit * (free // len(part.unit))
+            stitches += part.unit * (free // size)
         return stitches
 
 
 def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int, int]:
-    """Gains and losses with the increases and decreases, which stand only at the edges."""
+    """Gains and losses with the increases and decreases at the edges of a row that has no lace."""
+    if first == last == 0 and keeps_count(stitches):
+        return 0, 0
     end = len(stitches) - 1
     for index, form in ((i, s.form) for i, s in enumerate(stitches) if s.form):
         if form in ("k3tog", "p3tog") and end == 0:
@@ -233,8 +264,15 @@ def _shaped(line: Line, stitches: Stitches, first: int, last: int) -> tuple[int,
         elif form in ("m1", "m1p") and index == end - 1 and end > 2:
             last += 1
         else:
-            remedy = "Shape at the edges only: ssk first, k2tog last, m1 beside the edge stitch."
-            raise line.wrong(f"{form} is stitch {index + 1} of {end + 1}.", remedy)
+            problem = f"{form} is stitch {index + 1} of {end + 1}"
+            if all(s.form not in _MADE for s in stitches):
+                problem += f": the row takes {taken(stitches)} stitches and leaves {left(stitches)}"
+            remedy = (
+                "Give every decrease its yarn over, so that the row leaves as many stitches as it "
+                "takes; or shape at the edges only: ssk first, k2tog last, m1 beside the edge "
+                "stitch."
+            )
+            raise line.wrong(f"{problem}.", remedy)
     return first, last
 
 
@@ -292,6 +330,9 @@ def _edges(words: str) -> tuple[int, int, str]:
     return first, last, words
 
 
+_KEEP_COUNT = "Repeat stitches that leave as many as they take, such as *yo, k2tog*."
+MOST_LETTERS = 80
+"""Letters among which the words of a stitch are sought."""
 _THE_REST = -1
 """Stitches left by a repeat that is said to end with what follows."""
 
@@ -311,6 +352,7 @@ class _Reader:
     def __init__(self, line: Line, words: str, yarns: int, *, again: bool) -> None:
         self._line, self._words, self._yarns, self._again = line, words, yarns, again
         self._tokens = [(m[0].lower(), m.start()) for m in _TOKEN.finditer(words)]
+        self._is_plain = set(re.findall("[a-z]+", words.lower())) <= _PLAIN_WORDS
         self._next = 0
         self._yarn = None if yarns > 1 else 0
         self._stack = [_Frame()]
@@ -344,7 +386,7 @@ class _Reader:
 
     def _step(self) -> None:
         word = self._take()
-        if word in (",", ";", ".", ":", "and", "then"):
+        if word in (",", ";", ".", ":", "and", "then") or self._other_stitch():
             return
         if word in _BRACKETS:
             self._open(word)
@@ -363,11 +405,35 @@ class _Reader:
             self._change_yarn()
         elif _STITCH.fullmatch(word):
             self._stitch(word)
-        elif word in _SHAPED:
-            purl = word in ("ssp", "p2tog", "p3tog", "m1p")
-            self._add(RowPart((WrittenStitch(purl, word, self._named_yarn()),)))
+        elif word in _MADE:
+            self._add(RowPart((WrittenStitch(int(word == "m1p"), self._named_yarn(), word),)))
         else:
             raise self._unknown(self._next - 1)
+
+    def _other_stitch(self) -> bool:
+        """Read a stitch that is no plain knit or purl, if it stands at the token before."""
+        if self._is_plain:
+            return False
+        start = self._tokens[self._next - 1][1]
+        read = stitch_in(self._words[start : start + MOST_LETTERS].lower())
+        if read is None:
+            return False
+        while self._next < len(self._tokens) and self._tokens[self._next][1] < start + read.length:
+            self._next += 1
+        place = BY_CODE["V" if read.code == SLIP else read.code]
+        form = SLIP if read.code == SLIP else STITCHES[place].words
+        unit = (WrittenStitch(place, self._named_yarn(), form),)
+        unit *= min(read.often, MAX_STITCHES_PER_SIDE + 1)
+        self._skip("st", "sts", "stitch", "stitches")
+        leave, times, more = self._tail()
+        if leave is None:
+            times = 1 if times is None else times + max(more, 0)
+            self._add(RowPart(unit * min(times, MAX_STITCHES_PER_SIDE + 1)))
+        elif not keeps_count(unit):
+            raise self._line.wrong(f"{form} is repeated to the end.", _KEEP_COUNT)
+        else:
+            self._add(RowPart(unit, leave))
+        return True
 
     def _end_with(self) -> None:
         """Leave what follows to the end, unless the repeat has said how much that is."""
@@ -476,9 +542,8 @@ class _Reader:
         if not unit:
             raise self._line.wrong("a part of it is empty.", "Write stitches, such as k3.")
         if times is None:
-            if any(stitch.form for stitch in unit):
-                remedy = "Increase and decrease at the edges only."
-                raise self._line.wrong("a repeat increases or decreases.", remedy)
+            if not keeps_count(unit):
+                raise self._line.wrong("a repeat to the end increases or decreases.", _KEEP_COUNT)
             self._add(RowPart(unit, leave))
         elif times < 1:
             raise self._line.wrong("a part of it is worked 0 times.", "Leave it out.")
@@ -566,7 +631,7 @@ class _Reader:
 
     def _stitch(self, token: str) -> None:
         purl, number = token.startswith("p"), token[1:]
-        stitch = (WrittenStitch(purl, "", self._named_yarn()),)
+        stitch = (WrittenStitch(int(purl), self._named_yarn()),)
         is_word = not number.isdigit() and len(token) > 1
         start = self._next - 1
         count = int(number) if number.isdigit() else None
@@ -603,8 +668,10 @@ class _Reader:
         return (
             not token
             or not token[0].isalnum()
-            or token in ("and", "then", "rep", "repeat", "with", *_SHAPED)
+            or token in ("and", "then", "rep", "repeat", "with", *_MADE)
             or _STITCH.fullmatch(token) is not None
+            or stitch_in(self._words[self._tokens[self._next][1] :][:MOST_LETTERS].lower())
+            is not None
         )
 
     def _unknown(self, place: int) -> InputError:
@@ -620,8 +687,8 @@ class _Reader:
             remedy = 'Separate stitches by commas; a line of a chart stands without "Row".'
         else:
             remedy = (
-                "Write k3, p2, [k1, p1] 3 times or *k1, p1; rep from * to end: charts hold knits "
-                "and purls only."
+                "Write k3, p2, [k1, p1] 3 times, *yo, k2tog; rep from * to end, 2/2 RC, sl1 wyib "
+                "or tuck: charts hold stitches in rows that leave as many as they take."
             )
         what = f", {kind}," if kind else ""
-        return self._line.wrong(f"{where}{name!r}{what} is not a knit or a purl.", remedy)
+        return self._line.wrong(f"{where}{name!r}{what} is no stitch of a chart.", remedy)

@@ -16,6 +16,8 @@ import numpy as np
 from knitcore.base.arrays import Mask
 from knitcore.chart.row_sides import Construction, Side, side_of_row
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_kinds import STITCHES
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.write.chart_key import (
     FAINT,
     GRID,
@@ -27,10 +29,12 @@ from knitcore.formats.write.chart_key import (
     TENTH,
     ChartStyle,
     Points,
+    has_repeat,
     is_coloured,
     key_height,
     key_shapes,
     multiple_words,
+    stitch_shapes,
     symbol_shapes,
     tinted,
 )
@@ -53,20 +57,30 @@ NUMBERED_UP_TO = 40
 """Most stitches of a row that are all numbered; longer rows get every fifth number."""
 
 
-def chart_svg(chart: StitchChart | Piece, style: ChartStyle | None = None) -> str:
+def chart_svg(chart: StitchChart | Piece | SymbolChart, style: ChartStyle | None = None) -> str:
     """The whole chart as one SVG drawing."""
-    piece = Piece.of(chart)
+    piece, style = _drawn(chart, style)
     size = range(piece.chart.rows), range(piece.chart.columns)
-    return to_svg(_Part(piece, style or ChartStyle(), *size, CELL_MM).page(), _title(piece.chart))
+    return to_svg(_Part(piece, style, *size, CELL_MM).page(), _title(piece.chart))
 
 
-def chart_pdf(chart: StitchChart | Piece, style: ChartStyle | None = None) -> bytes:
+def chart_pdf(chart: StitchChart | Piece | SymbolChart, style: ChartStyle | None = None) -> bytes:
     """The chart as a PDF of :func:`chart_pages`."""
-    return to_pdf(chart_pages(chart, style), _title(Piece.of(chart).chart))
+    return to_pdf(chart_pages(chart, style), _title(_drawn(chart, style)[0].chart))
+
+
+def _drawn(
+    chart: StitchChart | Piece | SymbolChart, style: ChartStyle | None
+) -> tuple[Piece, ChartStyle]:
+    """The piece that is drawn, and the style with all stitches of a chart that has others."""
+    style = style or ChartStyle()
+    if isinstance(chart, SymbolChart) and not chart.is_plain:
+        return Piece.plain(chart.plain), replace(style, stitches=chart)
+    return Piece.of(chart), style
 
 
 def chart_pages(
-    chart: StitchChart | Piece, style: ChartStyle | None = None, *, first: int = 1
+    chart: StitchChart | Piece | SymbolChart, style: ChartStyle | None = None, *, first: int = 1
 ) -> tuple[Page, ...]:
     """The chart as A4 pages: one if it fits with cells of at least 3 mm, otherwise several.
 
@@ -75,7 +89,7 @@ def chart_pages(
     an overview, which has the names of the regions, the notes, and the numbers of the pages; that
     of the overview itself is ``first``.
     """
-    style, piece = style or ChartStyle(), Piece.of(chart)
+    piece, style = _drawn(chart, style)
     chart = piece.chart
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
     room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
@@ -161,12 +175,17 @@ class _Part:
         if paper is not None:
             width, height = paper
         else:
-            width = max(width, 120.0)
+            width = max(width, 120.0 if self.style.stitches is None else 190.0)
         return Page(width, height, tuple(self._shapes()))
 
     @property
     def chart(self) -> StitchChart:
         return self.piece.chart
+
+    @property
+    def _whole(self) -> StitchChart | SymbolChart:
+        """The chart with all its stitches."""
+        return self.style.stitches or self.chart
 
     @property
     def _row_height(self) -> float:
@@ -219,12 +238,18 @@ class _Part:
         about = (
             f"{self.piece.shaped.stitches} stitches inside the outline"
             if not self.piece.is_rectangle
-            else _multiple(self.chart)
+            else _multiple(self._whole)
         )
         yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
 
     def _boxes(
-        self, rows: range, columns: range, fill: str | None = None, stroke: str | None = None
+        self,
+        rows: range,
+        columns: range,
+        fill: str | None = None,
+        stroke: str | None = None,
+        *,
+        line_width: float = 0.7,
     ) -> Iterator[Rectangle]:
         """A box on these stitches, as far as they are in the window."""
         left, right = (max(columns.start, self.columns.start), min(columns.stop, self.columns.stop))
@@ -232,7 +257,7 @@ class _Part:
         if left < right and low < high:
             width, height = self.cell * (right - left), self._row_height * (high - low)
             yield Rectangle(
-                self.x(left), self.y(high - 1), width, height, fill, stroke, line_width=0.7
+                self.x(left), self.y(high - 1), width, height, fill, stroke, line_width=line_width
             )
 
     def _colours(self) -> Iterator[Shape]:
@@ -257,11 +282,30 @@ class _Part:
 
     def symbols(self, colour: str) -> Iterator[Shape]:
         """The symbols of the stitches."""
+        if self.style.stitches is not None:
+            yield from self._stitches(self.style.stitches, colour)
+            return
         window = np.s_[self.rows.start : self.rows.stop, self.columns.start : self.columns.stop]
         purl, stitch = self.chart.purl[window], self.piece.shaped.stitch[window]
         knits, purls = self._middles(stitch & ~purl), self._middles(stitch & purl)
         cell = (self.cell, self._row_height)
         yield from symbol_shapes(self.style.symbols, knits, purls, cell, colour)
+
+    def _stitches(self, chart: SymbolChart, colour: str) -> Iterator[Shape]:
+        """Symbols of any stitches; those that the window cuts are drawn as far as it reaches."""
+        cell, within = (self.cell, self._row_height), (LEFT_MM, LEFT_MM + self._width)
+        for place in np.unique(chart.cells):
+            stitch = STITCHES[place]
+            rows, columns = np.nonzero(chart.cells == place)
+            inside = (columns + stitch.width > self.columns.start) & (columns < self.columns.stop)
+            inside &= (rows >= self.rows.start) & (rows < self.rows.stop) & (place >= 0)
+            cells = list(zip(rows[inside].tolist(), columns[inside].tolist(), strict=True))
+            if stitch.width > 1:
+                for row, column in cells:
+                    box = range(row, row + 1), range(column, column + stitch.width)
+                    yield from self._boxes(*box, "#ffffff", GRID, line_width=0.15)
+            corners = tuple((self.x(column), self.y(row - 1)) for row, column in cells)
+            yield from stitch_shapes(stitch, self.style.symbols, corners, cell, colour, within)
 
     def _middles(self, cells: Mask) -> Points:
         rows, columns = np.nonzero(cells)
@@ -307,8 +351,8 @@ class _Part:
 
     def _repeat(self) -> Iterator[Shape]:
         """A heavy border around the repeat at the bottom right, where row 1 begins."""
-        repeat, columns = self.chart.repeat_cut(), self.chart.columns
-        if repeat != self.chart:
+        repeat, columns = self._whole.repeat_cut(), self.chart.columns
+        if has_repeat(self._whole):
             right = range(columns - repeat.columns, columns)
             yield from self._boxes(range(repeat.rows), right, stroke=HEAVY)
 
@@ -344,7 +388,7 @@ class _Part:
                 yield Label(self.x(column) + self.cell / 2, y, str(number), SMALL_MM, "middle")
 
 
-def _multiple(chart: StitchChart) -> str:
+def _multiple(chart: StitchChart | SymbolChart) -> str:
     repeat = chart.repeat_cut()
     if repeat == chart:
         return "no repeat"

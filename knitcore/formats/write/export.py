@@ -10,8 +10,9 @@ from knitcore.base.errors import InputError
 from knitcore.base.extensions import Group, offered, running
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches
 from knitcore.draw.laid_out import mean_stitch_mm
-from knitcore.formats.designs.design_file import DesignFile, write_design
+from knitcore.formats.designs.design_file import DesignFile, check_bare, write_design
 from knitcore.formats.designs.layout import DesignLayout, DesignRepeat, piece_of, region_cells
 from knitcore.formats.read.knitout_reader import verified
 from knitcore.formats.write.chart_drawing import chart_pdf, chart_svg
@@ -129,6 +130,9 @@ class ExportedFile:
     carriers: int | None = None
 
 
+Content = str | bytes | ExportedFile
+
+
 @dataclass(frozen=True)
 class Exporter:
     """A format: built in, or that of an extension (:mod:`knitcore.base.extensions`).
@@ -142,15 +146,18 @@ class Exporter:
     notes : for the user, about every file.
     holds_outlines : whether it can hold "no stitch"; other charts are refused.
     holds_yarns : whether it can hold several yarns; they are left out otherwise, with a note.
+    write_stitches : as ``write``, for a chart that has other stitches than knits and purls; None
+        if the format cannot hold them.
     """
 
     identifier: str
     suffix: str
     media_type: str
-    write: Callable[[Piece, Material, ExportOptions], str | bytes | ExportedFile]
+    write: Callable[[Piece, Material, ExportOptions], Content]
     notes: tuple[str, ...] = ()
     holds_outlines: bool = True
     holds_yarns: bool = True
+    write_stitches: Callable[[SymbolChart, Material, ExportOptions], Content] | None = None
 
 
 def exporters() -> dict[str, Exporter]:
@@ -165,7 +172,7 @@ def exporters() -> dict[str, Exporter]:
 
 
 def export_chart(
-    chart: StitchChart,
+    chart: StitchChart | SymbolChart,
     kind: ExportKind | str,
     material: Material,
     options: ExportOptions | None = None,
@@ -174,7 +181,7 @@ def export_chart(
 
     Parameters
     ----------
-    chart : the face grid.
+    chart : the face grid, of knits and purls or of any stitches.
     kind : the format, or the name of an extension's.
     material : gives the stitches their size and their values.
     options : see :class:`ExportOptions`.
@@ -183,23 +190,24 @@ def export_chart(
     ------
     InputError
         If there is no such format, the chart is too wide for the machine or too large for a mesh,
-        or has an outline that this format cannot hold.
+        or has an outline or stitches that this format cannot hold.
     ExtensionError
         If an extension's format fails.
     KnitoutMismatchError
         If a knitout program does not knit its chart on the virtual machine.
     """
     options = options or ExportOptions()
-    piece = replace(piece_of(chart, options.layout), gauge=options.gauge)
     exporter = FORMATS.get(kind) or _of_extension(kind)
+    stitches = as_stitches(chart)
+    if isinstance(stitches, SymbolChart):
+        return _finished(exporter, _written_stitches(exporter, stitches, material, options))
+    piece = replace(piece_of(stitches, options.layout), gauge=options.gauge)
     if not exporter.holds_outlines and not piece.is_rectangle:
         known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
         problem = f"{kind} cannot hold an outline: the cells outside it would become stitches."
         raise InputError("to", problem, f"Export {known}, or a rectangular part.")
     with nullcontext() if kind in FORMATS else running(Group.EXPORTERS, kind):
         content = exporter.write(piece, material, options)
-    if isinstance(content, ExportedFile):
-        return content
     notes = exporter.notes
     if not exporter.holds_yarns and len(piece.yarns) > 1:
         notes = (*notes, f"{kind} has no colours: the yarns are left out.")
@@ -212,8 +220,26 @@ def export_chart(
         if lacking := letters_lacking(texts):
             remedy = "write them in Latin, Greek or Cyrillic letters, or export SVG"
             notes = (*notes, f"The PDF cannot show these letters well: {lacking[:40]} ({remedy}).")
-    content = content.encode() if isinstance(content, str) else bytes(content)
-    return ExportedFile(kind, content, exporter.suffix, exporter.media_type, notes)
+    return _finished(exporter, content, notes)
+
+
+def _written_stitches(
+    exporter: Exporter, chart: SymbolChart, material: Material, options: ExportOptions
+) -> Content:
+    """The content of a file with other stitches than knits and purls."""
+    check_bare(options.layout)
+    if exporter.write_stitches is None:
+        known = ", ".join(name for name, built_in in FORMATS.items() if built_in.write_stitches)
+        problem = f"{exporter.identifier} holds knits and purls only."
+        raise InputError("to", problem, f"Export {known}, or give a chart of K and P.")
+    return exporter.write_stitches(chart, material, options)
+
+
+def _finished(exporter: Exporter, content: Content, notes: tuple[str, ...] = ()) -> ExportedFile:
+    if isinstance(content, ExportedFile):
+        return content
+    data = content.encode() if isinstance(content, str) else bytes(content)
+    return ExportedFile(exporter.identifier, data, exporter.suffix, exporter.media_type, notes)
 
 
 def _of_extension(kind: str) -> Exporter:
@@ -308,19 +334,24 @@ def _pattern(piece: Piece, material: Material, options: ExportOptions) -> tuple[
     return pattern_pages(piece, material, style, facts, options.photo, words)
 
 
-def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> str:
-    return write_knitspeak(piece.chart, options.construction, first_side=options.first_side)
+def _knitspeak(chart: Piece | SymbolChart, _: Material, options: ExportOptions) -> str:
+    rows = chart.chart if isinstance(chart, Piece) else chart
+    return write_knitspeak(rows, options.construction, first_side=options.first_side)
 
 
-def _written(piece: Piece, _: Material, options: ExportOptions) -> str:
-    return write_rows(piece, options.construction, first_side=options.first_side)
+def _written(chart: Piece | SymbolChart, _: Material, options: ExportOptions) -> str:
+    return write_rows(chart, options.construction, first_side=options.first_side)
 
 
-def _design(piece: Piece, material: Material, options: ExportOptions) -> str:
+def _text(chart: Piece | SymbolChart, _: Material, __: ExportOptions) -> str:
+    return f"{chart.chart.text if isinstance(chart, Piece) else chart.text}\n"
+
+
+def _design(chart: Piece | SymbolChart, material: Material, options: ExportOptions) -> str:
     document = DesignFile(
         name=options.name,
         material=material.identifier,
-        chart=piece.chart.text,
+        chart=chart.chart.text if isinstance(chart, Piece) else chart.text,
         note=options.note,
         **{name: getattr(options.layout, name) for name in DesignLayout.model_fields},
     )
@@ -400,11 +431,33 @@ _DRAWN = ("Loops are drawn schematically; the yarn was not simulated.",)
 _BUILT_IN = (
     Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout),
     Exporter(
-        ExportKind.KNITSPEAK, ".ks", _TEXT, _knitspeak, holds_outlines=False, holds_yarns=False
+        ExportKind.KNITSPEAK,
+        ".ks",
+        _TEXT,
+        _knitspeak,
+        holds_outlines=False,
+        holds_yarns=False,
+        write_stitches=_knitspeak,
     ),
-    Exporter(ExportKind.PNG, ".png", "image/png", lambda p, _, __: write_png(p)),
-    Exporter(ExportKind.SVG, *_SVG, lambda p, m, o: chart_svg(p, _style(p, m, o))),
-    Exporter(ExportKind.PDF, *_PDF, lambda p, m, o: chart_pdf(p, _style(p, m, o))),
+    Exporter(
+        ExportKind.PNG,
+        ".png",
+        "image/png",
+        lambda p, _, __: write_png(p),
+        write_stitches=lambda c, _, __: write_png(c),
+    ),
+    Exporter(
+        ExportKind.SVG,
+        *_SVG,
+        lambda p, m, o: chart_svg(p, _style(p, m, o)),
+        write_stitches=lambda c, m, o: chart_svg(c, _style(Piece.plain(c.plain), m, o)),
+    ),
+    Exporter(
+        ExportKind.PDF,
+        *_PDF,
+        lambda p, m, o: chart_pdf(p, _style(p, m, o)),
+        write_stitches=lambda c, m, o: chart_pdf(c, _style(Piece.plain(c.plain), m, o)),
+    ),
     Exporter(ExportKind.PATTERN, *_PDF, lambda p, m, o: to_pdf(_pattern(p, m, o), o.name)),
     Exporter(ExportKind.PATTERN_SVG, *_SVG, lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name)),
     Exporter(ExportKind.REPORT, *_PDF, _report),
@@ -414,14 +467,10 @@ _BUILT_IN = (
     Exporter(ExportKind.PUNCH_CARD, *_PDF, _punch_card),
     Exporter(ExportKind.PUNCH_CARD_TEXT, *_TXT, _punch_card_text),
     Exporter(
-        ExportKind.TEXT,
-        *_TXT,
-        lambda p, _, __: f"{p.chart.text}\n",
-        holds_outlines=False,
-        holds_yarns=False,
+        ExportKind.TEXT, *_TXT, _text, holds_outlines=False, holds_yarns=False, write_stitches=_text
     ),
-    Exporter(ExportKind.WRITTEN, *_TXT, _written),
-    Exporter(ExportKind.DESIGN, ".json", "application/json", _design),
+    Exporter(ExportKind.WRITTEN, *_TXT, _written, write_stitches=_written),
+    Exporter(ExportKind.DESIGN, ".json", "application/json", _design, write_stitches=_design),
     Exporter(
         ExportKind.GLB,
         *_GLB,

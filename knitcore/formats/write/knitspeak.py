@@ -15,12 +15,13 @@ from itertools import pairwise
 
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.write.written_pattern import in_brackets, row_words
-from knitcore.garment.worked_piece import piece_rows
+from knitcore.garment.worked_piece import all_rows
 
 
 def write_knitspeak(
-    chart: StitchChart,
+    chart: StitchChart | SymbolChart,
     construction: Construction = Construction.FLAT,
     *,
     first_side: Side = Side.RS,
@@ -37,11 +38,11 @@ def write_knitspeak(
     """
     flat = construction is Construction.FLAT
     groups: dict[tuple[str, Side], list[int]] = {}
-    for index, row in enumerate(piece_rows(chart, construction, first_side=first_side)):
-        words = row_words(row.purls).replace("; rep from *", ", repeat from *")
+    for index, row in enumerate(all_rows(chart, construction, first_side=first_side)):
+        words = row_words(row.stitches).replace("; rep from *", ", repeat from *")
         words = words.removesuffix(" to end")
         if index == 0:
-            words = in_brackets(row.purls).replace("(", "[").replace(")", "]")
+            words = in_brackets(row.stitches).replace("(", "[").replace(")", "]")
         groups.setdefault((words, row.side), []).append(index + 1)
     name = "Row" if flat else "Round"
     lines = []

@@ -21,8 +21,9 @@ rows say ``with A k10, with B …``::
     Row 9 (RS): K9, bind off the last 3 sts with a separate strand. (9 sts)
 """
 
+import re
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -30,8 +31,10 @@ import numpy as np
 from knitcore.base.arrays import runs
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_kinds import STITCHES
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.garment.piece import MAIN_YARN, Piece, yarn_name
-from knitcore.garment.worked_piece import PieceRow, piece_rows
+from knitcore.garment.worked_piece import PieceRow, all_rows
 
 LATER_USE = 2
 """Least number of repetitions that are written as a bracket."""
@@ -40,12 +43,14 @@ MIN_TO_INCREASE = 4
 
 
 def write_rows(
-    chart: StitchChart | Piece,
+    chart: StitchChart | Piece | SymbolChart,
     construction: Construction = Construction.FLAT,
     *,
     first_side: Side = Side.RS,
 ) -> str:
     """The instructions of a chart; :mod:`knitcore.formats.read.written_reader` reads them.
+
+    A row on the wrong side says what is worked there: a ``k2tog`` of the face as ``p2tog``.
 
     Raises
     ------
@@ -60,13 +65,13 @@ def write_rows(
     Bind off.
     <BLANKLINE>
     """
-    piece = Piece.of(chart)
+    piece = chart if isinstance(chart, SymbolChart) else Piece.of(chart)
     opening, (rows,) = written_sections(piece, construction, first_side=first_side)
     return "\n".join([*opening, *rows, "Bind off.", ""])
 
 
 def written_sections(
-    piece: Piece,
+    piece: Piece | SymbolChart,
     construction: Construction = Construction.FLAT,
     *,
     first_side: Side = Side.RS,
@@ -82,19 +87,20 @@ def written_sections(
     InputError
         If the outline or yarns cannot be worked in the round.
     """
-    rows = piece_rows(piece, construction, first_side=first_side)
-    count = _stitches(len(rows[0].purls))
+    rows = all_rows(piece, construction, first_side=first_side)
+    yarns = (MAIN_YARN,) if isinstance(piece, SymbolChart) else piece.yarns
+    count = _stitches(len(rows[0].yarns))
     if construction is Construction.ROUND:
         opening = [f"Cast on {count} and join in the round."]
     else:
         side = "right" if first_side is Side.RS else "wrong"
         opening = [f"Cast on {count}. Worked flat; row 1 is a {side}-side row."]
-    if piece.yarns != (MAIN_YARN,):
+    if yarns != (MAIN_YARN,):
         opening += [
             f"Yarn {yarn_name(index)}: {yarn.name} ({yarn.colour})"
-            for index, yarn in enumerate(piece.yarns)
+            for index, yarn in enumerate(yarns)
         ]
-    writer = _Writer(rows, construction, several=len(piece.yarns) > 1)
+    writer = _Writer(rows, construction, several=len(yarns) > 1)
     edges = pairwise([0, *breaks, len(rows)])
     return opening, [list(writer.block(start, stop)) for start, stop in edges]
 
@@ -109,7 +115,7 @@ class _Writer:
         self._flat = construction is Construction.FLAT
         self._name = "Row" if self._flat else "Rnd"
         known: dict[tuple[object, ...], int] = {}
-        keys = [(row.first, row.last, row.purls, row.yarns) for row in rows]
+        keys = [(row.first, row.last, row.stitches, row.yarns) for row in rows]
         codes = np.array([known.setdefault(key, len(known)) for key in keys])
         # A flat repeat of an odd number of rows would turn right-side rows to wrong-side ones.
         periods = [p for p in range(1, len(rows) // 2 + 1) if p == 1 or not (self._flat and p % 2)]
@@ -148,7 +154,7 @@ class _Writer:
         row = self._rows[start]
         side = f" ({row.side})" if self._flat and stop - start == 1 else ""
         words = piece_row_words(row, several=self._several)
-        count = _stitches(len(row.purls))
+        count = _stitches(len(row.yarns))
         return f"{self._range(start, stop)}{side}: {words[0].upper()}{words[1:]}. ({count})"
 
     def _range(self, start: int, stop: int) -> str:
@@ -164,14 +170,14 @@ def piece_row_words(row: PieceRow, *, several: bool) -> str:
     stretches = runs(row.yarns)
     for start, stop, yarn in stretches:
         plain = len(stretches) == 1 and not after and not any(forms)
-        words = row_words(row.purls) if plain else _bracketed(row.purls, forms, start, stop)
+        words = row_words(row.stitches) if plain else _bracketed(row.stitches, forms, start, stop)
         parts.append(f"with {yarn_name(yarn)} {words}" if several else words)
     return ", ".join([*parts, *after])
 
 
 def _edge_forms(row: PieceRow) -> tuple[list[str], list[str], list[str]]:
     """How each stitch is made ("" if simply worked), and the words before and after."""
-    count = len(row.purls)
+    count = len(row.stitches)
     forms = [""] * count
     before: list[str] = []
     after: list[str] = []
@@ -200,20 +206,20 @@ _PURLED = {"ssk": "p2tog", "k2tog": "ssp", "k3tog": "p3tog", "m1": "m1p"}
 """The same act on a purl, leaning the same way as the row is worked: along the edge."""
 
 
-def _bracketed(purls: Sequence[bool], forms: Sequence[str], start: int, stop: int) -> str:
+def _bracketed(stitches: Sequence[int], forms: Sequence[str], start: int, stop: int) -> str:
     """A stretch of a row with its repeat in brackets, which gives the number of stitches."""
     parts, plain = [], start
     for index in range(start, stop):
         if forms[index]:
-            parts += [in_brackets(tuple(purls[plain:index]))] if index > plain else []
-            parts.append(_PURLED[forms[index]] if purls[index] else forms[index])
+            parts += [in_brackets(tuple(stitches[plain:index]))] if index > plain else []
+            parts.append(_PURLED[forms[index]] if stitches[index] else forms[index])
             plain = index + 1
-    parts += [in_brackets(tuple(purls[plain:stop]))] if stop > plain else []
+    parts += [in_brackets(tuple(stitches[plain:stop]))] if stop > plain else []
     return ", ".join(parts)
 
 
 @lru_cache(maxsize=4096)
-def in_brackets(purls: tuple[bool, ...]) -> str:
+def in_brackets(stitches: tuple[int, ...]) -> str:
     """A row with its longest repeat in brackets, which gives the number of stitches.
 
     Examples
@@ -221,17 +227,17 @@ def in_brackets(purls: tuple[bool, ...]) -> str:
     >>> in_brackets((False, True, False, True, False))
     '(k1, p1) twice, k1'
     """
-    start, period, times = _longest_repeat(purls)
+    start, period, times = _longest_repeat(stitches)
     if times < LATER_USE:
-        return _plain(purls)
-    unit, end = purls[start : start + period], start + period * times
+        return _plain(stitches)
+    unit, end = stitches[start : start + period], start + period * times
     often = "twice" if times == 2 else f"{times} times"
-    parts = [_plain(purls[:start]), f"({_plain(unit)}) {often}", _plain(purls[end:])]
+    parts = [_plain(stitches[:start]), f"({_plain(unit)}) {often}", _plain(stitches[end:])]
     return ", ".join(part for part in parts if part)
 
 
 @lru_cache(maxsize=4096)
-def row_words(purls: tuple[bool, ...]) -> str:
+def row_words(stitches: tuple[int, ...]) -> str:
     """One row in words, its longest repeat starred.
 
     Examples
@@ -241,35 +247,41 @@ def row_words(purls: tuple[bool, ...]) -> str:
     >>> row_words((True, True, True))
     'purl'
     """
-    if len(set(purls)) == 1:
-        return "purl" if purls[0] else "knit"
-    start, period, times = _longest_repeat(purls)
+    if set(stitches) in ({0}, {1}):
+        return "purl" if stitches[0] else "knit"
+    start, period, times = _longest_repeat(stitches)
     if times < LATER_USE:
-        return _plain(purls)
-    before, unit = purls[:start], purls[start : start + period]
-    after = purls[start + period * times :]
+        return _plain(stitches)
+    before, unit = stitches[:start], stitches[start : start + period]
+    if sum(STITCHES[stitch].takes - STITCHES[stitch].width for stitch in unit):
+        return in_brackets(stitches)  # a repeat to the end leaves as many as it takes
+    after = stitches[start + period * times :]
     parts = [_plain(before)] if before else []
-    end = "to end" if not after else f"to last {_stitches(len(after), alone='st')}"
+    left = sum(STITCHES[stitch].takes for stitch in after)
+    end = "to end" if not after else f"to last {_stitches(left, alone='st')}"
     parts.append(f"*{_plain(unit)}; rep from * {end}")
     if after:
         parts.append(_plain(after))
     return ", ".join(parts)
 
 
-def _longest_repeat(purls: tuple[bool, ...]) -> tuple[int, int, int]:
+def _longest_repeat(stitches: tuple[int, ...]) -> tuple[int, int, int]:
     """Start, period and count of the repeat that saves most words; count 0 if none saves any."""
-    row = np.array(purls)
+    row = np.array(stitches)
     best, saved = (0, 0, 0), 0
-    for period in range(LATER_USE, len(purls) // 2 + 1):
+    for period in range(1, len(stitches) // 2 + 1):
         lengths = _run_lengths(row[period:] == row[:-period])
         # A repeat best begins where a run of like stitches does.
-        for start in _starts(purls):
+        for start in _starts(stitches):
             if start >= len(lengths):
                 break
             times = (int(lengths[start]) + period) // period
             if times < LATER_USE:
                 continue
-            unit, written = purls[start : start + period], purls[start : start + period * times]
+            unit, written = (
+                stitches[start : start + period],
+                stitches[start : start + period * times],
+            )
             gain = len(_tokens(written)) - len(_tokens(unit)) - 1
             if gain > saved:
                 best, saved = (start, period, times), gain
@@ -277,8 +289,8 @@ def _longest_repeat(purls: tuple[bool, ...]) -> tuple[int, int, int]:
 
 
 @lru_cache(maxsize=64)
-def _starts(purls: tuple[bool, ...]) -> tuple[int, ...]:
-    return (0, *(i for i in range(1, len(purls)) if purls[i] != purls[i - 1]))
+def _starts(stitches: tuple[int, ...]) -> tuple[int, ...]:
+    return (0, *(i for i in range(1, len(stitches)) if stitches[i] != stitches[i - 1]))
 
 
 def _run_lengths(equal: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> np.ndarray:
@@ -288,12 +300,29 @@ def _run_lengths(equal: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> np.n
     return following - np.arange(len(equal))
 
 
-def _tokens(purls: Sequence[bool]) -> list[tuple[bool, int]]:
-    return [(purl, len(list(alike))) for purl, alike in groupby(purls)]
+def _tokens(stitches: Sequence[int]) -> list[tuple[int, int]]:
+    """Stitches and how often they follow each other; those that take no number, each alone."""
+    runs_of = [(stitch, len(list(alike))) for stitch, alike in groupby(stitches)]
+    return [
+        token
+        for stitch, count in runs_of
+        for token in ([(stitch, count)] if counted(stitch, 1) else [(stitch, 1)] * count)
+    ]
 
 
-def _plain(purls: Sequence[bool]) -> str:
-    return ", ".join(f"{'p' if purl else 'k'}{count}" for purl, count in _tokens(purls))
+_COUNTED = re.compile(r"(k|p|sl)1?((?: .*)?)$")
+
+
+@cache
+def counted(stitch: int, count: int) -> str:
+    """Words of a run of a stitch, such as k3, k3 tbl and sl3 wyib; none if it takes no number."""
+    name = _COUNTED.match(STITCHES[stitch].words)
+    return f"{name[1]}{count}{name[2]}" if name else ""
+
+
+def _plain(stitches: Sequence[int]) -> str:
+    tokens = _tokens(stitches)
+    return ", ".join(counted(stitch, n) or STITCHES[stitch].words for stitch, n in tokens)
 
 
 def _stitches(count: int, *, alone: str = "1 st") -> str:

@@ -11,11 +11,11 @@ from tests.knitcore.charts import stitch_charts
 @given(chart=stitch_charts())
 def test_beginning_on_the_other_side_is_working_the_back_of_the_cloth(chart: StitchChart) -> None:
     front, back = piece_rows(chart, first_side=Side.WS), piece_rows(chart.turn_over())
-    assert [row.purls for row in front] == [row.purls for row in back]
+    assert [row.stitches for row in front] == [row.stitches for row in back]
 
 
 def test_a_right_side_row_is_worked_from_the_right() -> None:
-    assert piece_rows(StitchChart.parse("KKP"))[0].purls == (True, False, False)
+    assert piece_rows(StitchChart.parse("KKP"))[0].stitches == (True, False, False)
 
 
 def test_rows_of_different_length_are_refused() -> None:

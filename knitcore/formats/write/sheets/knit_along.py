@@ -121,7 +121,7 @@ def knit_along(
 
 
 def _hand_row(number: int, row: PieceRow, first: int, *, several: bool, in_round: bool) -> AlongRow:
-    stitches = "".join("P" if purl else "K" for purl in reversed(row.purls))
+    stitches = "".join("P" if purl else "K" for purl in reversed(row.stitches))
     yarns = tuple((stop - start, yarn) for start, stop, yarn in runs(row.yarns[::-1]))
     words = (piece_row_words(row, several=several),)
     heading = "" if in_round else SIDES[row.side]

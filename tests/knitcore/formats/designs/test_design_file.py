@@ -20,7 +20,7 @@ def test_the_schema_names_what_a_file_holds() -> None:
     [
         ({"colour": "red"}, "colour"),
         ({"name": ""}, "name"),
-        ({"chart": "KX"}, "neither K nor P"),
+        ({"chart": "KX"}, "which is no stitch"),
         ({"version": 3}, "version 3"),
         ({"version": 1}, "version 1"),
         ({"version": True}, "version"),

@@ -15,6 +15,7 @@ from hypothesis import example, given, settings
 
 from knitcore import Direction, Fabric, InputError, StitchChart, material
 from knitcore.chart.row_sides import Construction
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import (
     DesignLayout,
@@ -23,11 +24,23 @@ from knitcore.formats.designs.layout import (
     Placement,
     layout_of,
 )
-from knitcore.formats.read.chart_files import read_noted_chart, read_noted_piece
+from knitcore.formats.read.chart_files import (
+    read_noted_chart,
+    read_noted_piece,
+    read_noted_stitches,
+)
 from knitcore.formats.write import report
 from knitcore.formats.write.chart_drawing import chart_pages, chart_pdf, chart_svg
-from knitcore.formats.write.chart_key import HEAVY, INK, ChartStyle, RegionMark, Symbols, tinted
-from knitcore.formats.write.drawn_page import Label, Page, Rectangle, to_pdf, to_svg
+from knitcore.formats.write.chart_key import (
+    HEAVY,
+    INK,
+    KINDS_WITH_NAMES,
+    ChartStyle,
+    RegionMark,
+    Symbols,
+    tinted,
+)
+from knitcore.formats.write.drawn_page import Label, Lines, Page, Rectangle, to_pdf, to_svg
 from knitcore.formats.write.export import FORMATS, ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.extensibility_drawing import region_fields
 from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
@@ -36,6 +49,7 @@ from knitcore.garment.piece import Piece
 from knitcore.mechanics.local_moduli import local_moduli
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
+from tests.knitcore.symbol_charts import symbol_charts
 
 ACRYLIC = material("acrylic:published")
 WHOLE = (ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN)
@@ -417,3 +431,63 @@ def test_files_for_home_machines_follow_the_machine_of_the_design(kind: str) -> 
     industrial = ExportOptions(layout=DesignLayout(machine="kniterate"))
     with pytest.raises(InputError, match="Kniterate"):
         export_chart(chart, kind, ACRYLIC, industrial)
+
+
+STITCH_KINDS = [kind for kind, exporter in FORMATS.items() if exporter.write_stitches]
+READ_BACK = [ExportKind.TEXT, ExportKind.WRITTEN, ExportKind.KNITSPEAK, ExportKind.DESIGN]
+READ_BACK += [ExportKind.PNG]
+
+
+def with_stitches(chart: SymbolChart, kind: ExportKind, folder: Path) -> SymbolChart:
+    file = folder / f"stitches{FORMATS[kind].suffix}"
+    file.write_bytes(export_chart(chart, kind, ACRYLIC).content)
+    read = read_noted_stitches(file)[0]
+    return read if isinstance(read, SymbolChart) else SymbolChart.of(read)
+
+
+@pytest.mark.parametrize("kind", READ_BACK)
+@settings(max_examples=20)
+@given(chart=symbol_charts())
+def test_any_stitches_are_read_back(
+    kind: ExportKind, chart: SymbolChart, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("stitches")
+    assert with_stitches(chart, kind, folder) == chart
+    assert with_stitches(chart.turn_over(), kind, folder).turn_over() == chart
+    assert with_stitches(chart.mirror(), kind, folder).mirror() == chart
+
+
+@pytest.mark.parametrize("kind", [kind for kind in ExportKind if kind not in STITCH_KINDS])
+def test_other_formats_refuse_other_stitches_in_words(kind: ExportKind) -> None:
+    chart = SymbolChart.parse("O/;KK")
+    with pytest.raises(InputError, match=f"{kind} holds knits and purls only. Export .*text, "):
+        export_chart(chart, kind, ACRYLIC)
+
+
+def test_a_shaped_chart_of_other_stitches_is_refused() -> None:
+    options = ExportOptions(layout=DesignLayout(outline=".x\nxx"))
+    with pytest.raises(InputError, match="outline: a chart with lace"):
+        export_chart(SymbolChart.parse("O/;KK"), ExportKind.TEXT, ACRYLIC, options)
+
+
+@pytest.mark.parametrize("symbols", Symbols)
+@given(chart=symbol_charts(most_columns=60))
+@settings(max_examples=10)
+def test_every_drawing_names_its_stitches(symbols: Symbols, chart: SymbolChart) -> None:
+    pages = chart_pages(chart.tile(3, 2), ChartStyle(symbols=symbols))
+    labels = {shape.text for page in pages for shape in page.shapes if isinstance(shape, Label)}
+    kinds = {chart.stitch(*cell) for cell in np.ndindex(chart.cells.shape)}
+    if len(kinds) <= KINDS_WITH_NAMES and not chart.is_plain:
+        assert all(any(text.startswith(f"{s.name}: ") for text in labels) for s in kinds)
+
+
+def test_a_cable_at_the_edge_of_a_page_is_cut_there() -> None:
+    rope = SymbolChart.parse("P[3/3R]P;PKKKKKKP").tile(8, 12)
+    _, *pages = chart_pages(rope)
+    for page in pages:
+        box = next(s for s in page.shapes if isinstance(s, Rectangle) and s.fill == "#ffffff")
+        drawn = [s for s in page.shapes if isinstance(s, Lines) and s.stroke == INK]
+        ends = [
+            x for s in drawn for line in s.lines for x in line[::2] if line[1] < box.y + box.height
+        ]
+        assert box.x - 1e-9 <= min(ends) <= max(ends) <= box.x + box.width + 1e-9

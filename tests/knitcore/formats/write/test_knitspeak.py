@@ -48,7 +48,7 @@ def test_patterns_of_other_hands(text: str, chart: str) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("Row 1: k1, yo, k2tog.", "row 1: stitch 2, 'yo', a yarn over, is not a knit or a purl"),
+        ("Row 1: k1, yo, k2tog.", "yarn over and knit 2 together; this takes knits and purls only"),
         ("Row 2: k1.", "row 1 is missing"),
         ("Row 1: k1.\nRow 1: p1.", "is given twice"),
         (
