@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 
+from knitcore.base.loading import loading
+
 from ..context import Context
 from ..operations.chart.predict import PredictRequest, predict
 from ..viewer import relay
@@ -195,13 +197,14 @@ def _warm_up() -> None:
     """Read the learned answers, which the first prediction would wait a second for, and load what
     pressures and views need.
     """
-    import scipy.ndimage
-    import scipy.optimize  # noqa: F401
+    with loading():
+        import scipy.ndimage
+        import scipy.optimize  # noqa: F401
 
-    from ..viewer import private_port  # noqa: F401
+        from ..viewer import private_port  # noqa: F401
 
-    mixed = PredictRequest(chart="KP/KK", material="acrylic")
-    predict(mixed, Context(Path()))
+        mixed = PredictRequest(chart="KP/KK", material="acrylic")
+        predict(mixed, Context(Path()))
     memory.give_back()
 
 
