@@ -8,7 +8,6 @@ import logging
 import os
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,6 +34,7 @@ from .designs.watching import Watched
 from .jobs.runner import JobRunner
 from .jobs.store import JobStore
 from .limits.fair_queue import FairLock
+from .limits.fair_threads import FairThreads
 from .limits.user_limits import USER_LIMITS, ConcurrencyLimit, RateLimit
 from .periodic import repeated
 from .problems import PROBLEM_RESPONSES
@@ -75,7 +75,8 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     chosen: Settings = app.state.settings
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
-    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
+    each = THREADS_EACH if chosen.asks_for_login else THREADS
+    asyncio.get_running_loop().set_default_executor(FairThreads(THREADS, each))
     current_default_thread_limiter().total_tokens = THREADS + SPARE_THREADS  # FastAPI's
     given: Database | None = app.state.database
     app.state.database = given or await asyncio.to_thread(_open_database, chosen)
@@ -86,11 +87,11 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.compute = Compute(
         _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
     )
-    each = THREADS_EACH if chosen.asks_for_login else THREADS
     app.state.threads = FairLock(THREADS, most_each=each, most_waiting=sys.maxsize)
     app.state.large_bodies = FairLock()
     app.state.light_work = FairLock()
     app.state.drawing = FairLock()
+    app.state.result_parts = FairLock(most_waiting=sys.maxsize)
     app.state.backs = set()  # tasks that draw the backs of cloths
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
