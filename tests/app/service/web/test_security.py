@@ -49,7 +49,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def test_requests_that_come_at_once_look_for_their_login_once() -> None:
-    looks = []
+    looks = list[bool]()
 
     def login(*, at_once: bool = False) -> str:
         if not looks and at_once:
@@ -58,7 +58,7 @@ def test_requests_that_come_at_once_look_for_their_login_once() -> None:
         return "ada"
 
     async def come() -> list[str]:
-        control = AccessControl(lambda *_: None, Settings(require_login=True))  # type: ignore[arg-type, return-value]
+        control = AccessControl(lambda *_: None, Settings(require_login=True))  # type: ignore[arg-type]
         return await asyncio.gather(*(control._known({}, login) for _ in range(9)))
 
     assert asyncio.run(come()) == 9 * ["ada"]
