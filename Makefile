@@ -118,7 +118,8 @@ audit: $(VENV)/.installed-tests build/product.txt ## Risky code, licences, list 
 	$(BIN)/python -m scripts.audit
 	@if $(MAKE) --no-print-directory .audit/.installed; then \
 		.audit/bin/bandit --quiet --severity-level medium -c pyproject.toml -r app knitcore && \
-		.audit/bin/pip-audit --strict --disable-pip --require-hashes -r build/product.txt; \
+		{ .audit/bin/pip-audit --strict --disable-pip --require-hashes -r build/product.txt 2>build/holes.txt || \
+			{ cat build/holes.txt; grep -q "not found on PyPI" build/holes.txt && echo "Nobody looked for known holes: this index has no list of them."; }; }; \
 	else echo "PyPI does not answer: bandit did not run, and nobody looked for known holes."; fi
 
 format: $(VENV)/.installed-tests frontend/node_modules/.installed ## Format the code

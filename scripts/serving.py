@@ -12,7 +12,7 @@ from typing import Self
 
 import httpx2 as httpx
 
-STARTS_WITHIN_S = 120.0
+STARTS_WITHIN_S = 600.0
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = [
     "--no-sandbox",

@@ -68,7 +68,9 @@ def _painted(client: httpx.Client, design: dict[str, Any]) -> str:
     return str(client.get(f"/api/v1/designs/{design['id']}").json()["document"]["chart"])
 
 
-def test_sign_in_paint_stretch_back_up_restore(running: Composition, tmp_path: Path) -> None:
+def test_sign_in_paint_stretch_back_up_restore_upgrade(
+    running: Composition, tmp_path: Path
+) -> None:
     assert httpx.get(f"{running.url}/readyz", timeout=PATIENCE_S).status_code == 200
     assert (
         httpx.post(f"{running.url}/api/v1/predict", json=PULL, timeout=PATIENCE_S).status_code
@@ -90,22 +92,37 @@ def test_sign_in_paint_stretch_back_up_restore(running: Composition, tmp_path: P
     backup = tmp_path / "backup.gz"
     running.knitcore("backup", backup)
     assert b'"table": "own_materials"' in gzip.decompress(backup.read_bytes())
-    running.sql("CREATE DATABASE again")
-    again = {"database_url": running.database_url("again")}
-    running.knitcore("restore", backup, **again)
-
-    assert running.service.stop() == 0
-    running.service.environment["KNITCORE_DATABASE_URL"] = again["database_url"]
-    running.service.start().close()
-    repointed(running.folder, running.service)
-    _until_ready(running)
-    with _signed_in(running, token) as ada:
+    for database in "again", "earlier":
+        running.sql(f"CREATE DATABASE {database}")
+        running.knitcore("restore", backup, database_url=running.database_url(database))
+    with _started_on(running, "again", token) as ada:
         kept = ada.get(f"/api/v1/designs/{design['id']}").json()
         assert kept["document"]["chart"] == chart
         assert _stretched(ada, own)["converged"]
+
+    # as the program before the last schema left it
+    running.sql(
+        "DROP TABLE own_materials; UPDATE alembic_version SET version_num='0008'", "earlier"
+    )
+    with _started_on(running, "earlier", token) as ada:
+        assert _painted(ada, design) == chart
+        again = ada.post("/api/v1/materials", json=yarn | {"identifier": "mine"}).json()["id"]
+        assert again == own
     log = running.service.log.read_text()
     assert "Traceback" not in log
     assert token not in log
+
+
+@contextlib.contextmanager
+def _started_on(running: Composition, database: str, token: str) -> Iterator[httpx.Client]:
+    """Somebody who is signed in to a service that was started again on another database."""
+    assert running.service.stop() == 0
+    running.service.environment["KNITCORE_DATABASE_URL"] = running.database_url(database)
+    running.service.start().close()
+    repointed(running.folder, running.service)
+    _until_ready(running)
+    with _signed_in(running, token) as client:
+        yield client
 
 
 def _until_ready(running: Composition) -> None:

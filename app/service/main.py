@@ -8,13 +8,14 @@ import logging
 import os
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
+
+from knitcore.base.loading import loading
 
 from ..context import Context
 from ..operations.chart.predict import PredictRequest, predict
@@ -33,6 +34,7 @@ from .designs.watching import Watched
 from .jobs.runner import JobRunner
 from .jobs.store import JobStore
 from .limits.fair_queue import FairLock
+from .limits.fair_threads import FairThreads
 from .limits.user_limits import USER_LIMITS, ConcurrencyLimit, RateLimit
 from .periodic import repeated
 from .problems import PROBLEM_RESPONSES
@@ -73,7 +75,8 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     chosen: Settings = app.state.settings
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
-    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
+    each = THREADS_EACH if chosen.asks_for_login else THREADS
+    asyncio.get_running_loop().set_default_executor(FairThreads(THREADS, each))
     current_default_thread_limiter().total_tokens = THREADS + SPARE_THREADS  # FastAPI's
     given: Database | None = app.state.database
     app.state.database = given or await asyncio.to_thread(_open_database, chosen)
@@ -84,11 +87,11 @@ async def _running(app: FastAPI) -> AsyncIterator[None]:
     app.state.compute = Compute(
         _workers(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
     )
-    each = THREADS_EACH if chosen.asks_for_login else THREADS
     app.state.threads = FairLock(THREADS, most_each=each, most_waiting=sys.maxsize)
     app.state.large_bodies = FairLock()
     app.state.light_work = FairLock()
     app.state.drawing = FairLock()
+    app.state.result_parts = FairLock(most_waiting=sys.maxsize)
     app.state.backs = set()  # tasks that draw the backs of cloths
     app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
     app.state.recent = RecentResults()
@@ -195,13 +198,14 @@ def _warm_up() -> None:
     """Read the learned answers, which the first prediction would wait a second for, and load what
     pressures and views need.
     """
-    import scipy.ndimage
-    import scipy.optimize  # noqa: F401
+    with loading():
+        import scipy.ndimage
+        import scipy.optimize  # noqa: F401
 
-    from ..viewer import private_port  # noqa: F401
+        from ..viewer import private_port  # noqa: F401
 
-    mixed = PredictRequest(chart="KP/KK", material="acrylic")
-    predict(mixed, Context(Path()))
+        mixed = PredictRequest(chart="KP/KK", material="acrylic")
+        predict(mixed, Context(Path()))
     memory.give_back()
 
 

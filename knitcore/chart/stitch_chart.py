@@ -264,6 +264,8 @@ class StitchChart:
 
 def _check_blanks(lines: list[tuple[int, str]], *, purls_only: bool) -> None:
     """Refuse a blank that may be a knit, as it is in printed charts, rather than a space."""
+    if not purls_only and not any(gap in line.strip() for _, line in lines for gap in " \t,"):
+        return
     blank = next(_doubtful_blanks(lines, purls_only=purls_only), None)
     if blank is not None:
         problem = f"line {blank[0]}, column {blank[1]} is blank: a knit, or only space."

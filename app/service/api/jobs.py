@@ -2,8 +2,7 @@
 
 import asyncio
 import contextlib
-from collections.abc import AsyncGenerator, Iterator
-from itertools import chain
+from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Request, Response
@@ -15,6 +14,7 @@ from ...requests.uploads import has_files
 from ..compute.answers import Answers
 from ..designs.conditions import ConflictError
 from ..designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
+from ..identity import current_user
 from ..jobs.document import JobPage, JobState, JobStatus
 from ..jobs.kinds import JobRequest, JobResult, accepted, read_job
 from ..jobs.runner import JobRunner
@@ -108,7 +108,9 @@ async def _states(
 class _HeldResponse(StreamingResponse):
     """A streamed answer that is counted until it ends."""
 
-    def __init__(self, held: contextlib.ExitStack, parts: Iterator[bytes], **more: Any) -> None:
+    def __init__(
+        self, held: contextlib.ExitStack, parts: AsyncIterator[bytes], **more: Any
+    ) -> None:
         super().__init__(parts, **more)
         self._held = held
 
@@ -159,8 +161,18 @@ async def _result(
     first = await asyncio.to_thread(next, parts, b"")  # what fails here can still be answered
     if not first:
         raise _gone()
-    whole = chain([first], parts)
-    return _HeldResponse(held.pop_all(), whole, media_type="application/json", headers=headers)
+    sent = _sent(first, parts, request.app.state.result_parts)
+    return _HeldResponse(held.pop_all(), sent, media_type="application/json", headers=headers)
+
+
+async def _sent(
+    part: bytes | None, others: Iterator[bytes], lock: FairLock
+) -> AsyncIterator[bytes]:
+    """Parts of a result, each read in its user's turn."""
+    while part is not None:
+        yield part
+        async with lock.turn(current_user.get()):
+            part = await asyncio.to_thread(next, others, None)
 
 
 def _gone() -> NotFoundError:

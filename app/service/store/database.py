@@ -220,9 +220,7 @@ class Database:
             As in :meth:`write`.
         """
         if self._writer is None:
-            from fastapi.concurrency import run_in_threadpool  # loads for 0.3 s
-
-            return await run_in_threadpool(self.write, action)
+            return await asyncio.to_thread(self.write, action)
         with self.failures():
             return await asyncio.wrap_future(self._hand_in(action))
 

@@ -1,10 +1,10 @@
 """Responses, compressed by the workers."""
 
+import asyncio
 import gzip
 import hashlib
 from typing import Any
 
-from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 from starlette.datastructures import Headers
 
@@ -76,5 +76,5 @@ async def json_response(content: bytes, headers: Headers) -> Response:
     if takes_gzip(headers):
         answer["Content-Encoding"] = "gzip"
     else:
-        content = await run_in_threadpool(gzip.decompress, content)
+        content = await asyncio.to_thread(gzip.decompress, content)
     return Response(content, media_type="application/json", headers=answer)

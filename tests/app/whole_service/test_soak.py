@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -168,21 +169,24 @@ class Crowd:
                 self.done[kind] += 1
 
 
-def _family(pid: int) -> Iterator[int]:
-    """Yield the processes that a process has started, and those they have."""
+def _children(pid: int) -> Iterator[int]:
+    """Yield the processes that a process has started."""
     for thread in Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(OSError):  # it has ended
-            for child in map(int, thread.read_text(encoding="ascii").split()):
-                yield child
-                yield from _family(child)
+            yield from map(int, thread.read_text(encoding="ascii").split())
+
+
+def _workers(pid: int) -> list[int]:
+    """The workers of a service, which the process that loads their modules has started."""
+    return [worker for loader in _children(pid) for worker in _children(loader)]
 
 
 def _workers_mb(pid: int) -> float:
     """Memory of the workers of a service."""
     total = 0.0
-    for worker in _family(pid):
+    for process in [*_children(pid), *_workers(pid)]:
         with contextlib.suppress(OSError):
-            total += _resident_mb(worker)
+            total += _resident_mb(process)
     return total
 
 
@@ -205,8 +209,13 @@ def _needs(services: list[Service], seconds: float) -> list[tuple[float, float, 
 
 
 def _restart(services: list[Service], crowd: Crowd, url: str | None) -> None:
-    """Kill each service, stop it by a signal once it is used again, and then lose the database."""
+    """Kill the workers of each service and then itself, stop it by a signal once it is used again,
+    and lose the database at the end."""
     for service in services:
+        shapes = crowd.done["shape"]
+        for worker in _workers(service.pid):
+            os.kill(worker, signal.SIGKILL)
+        wait_until(lambda: crowd.done["shape"] > shapes + 1)  # noqa: B023 - used at once
         service.kill()
         service.start().close()
         strokes = crowd.strokes()

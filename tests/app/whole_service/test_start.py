@@ -32,6 +32,12 @@ try:
 finally:
     print(*sys.modules, file=sys.stderr)
 """
+READY = """
+import gc
+from app.service import main
+main._warm_up()
+print(len(gc.get_objects()), gc.get_freeze_count())
+"""
 
 
 @pytest.fixture
@@ -57,3 +63,8 @@ def test_a_command_that_computes_nothing_loads_neither_solvers_nor_the_service(
 def test_what_workers_run_is_declared_without_its_solvers() -> None:
     code = "import sys; from app.operations.registry import operations; operations()"
     assert not SOLVERS & set(python("-c", f"{code}; print(*sys.modules)").stdout.split())
+
+
+def test_no_request_waits_while_python_looks_for_garbage_in_what_is_loaded() -> None:
+    looked_through, left_out = map(int, python("-c", READY).stdout.split())
+    assert looked_through < left_out / 10

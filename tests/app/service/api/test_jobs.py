@@ -1,7 +1,12 @@
 """A job accepts exactly what its operation accepts, and its result is sent to few at once."""
 
+import gzip
 import json
+import os
 import re
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 from unittest.mock import AsyncMock, Mock
 
@@ -10,13 +15,13 @@ from fastapi.testclient import TestClient
 
 from app.context import Context
 from app.operations.registry import operations
-from app.service.jobs.document import JobStatus
+from app.service.jobs.document import JobState, JobStatus
 from app.service.jobs.kinds import KINDS, JobOf, accepted
-from app.service.jobs.store import StoredResult
+from app.service.jobs.store import PART_BYTES, StoredResult
 from app.service.limits.user_limits import USER_LIMITS
 from app.service.problems import StoreError
 from app.service.web.bodies import SMALL_BYTES
-from tests.app.clients import LONG, state_of
+from tests.app.clients import LONG, login, served, state_of
 from tests.app.running import wait_until
 
 CHART = {"chart": "KP/PK", "material": "acrylic"}
@@ -122,6 +127,35 @@ def test_the_events_of_a_job_outlast_a_lost_database(
     assert client.delete(f"/api/v1/jobs/{job['id']}").status_code == 200
     assert events.count("event: status") == 2
     assert '"state":"done"' in events
+
+
+def test_results_are_sent_in_turn_and_leave_threads_to_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part, held, go_on = StoredResult._part, list[int](), threading.Event()
+
+    def slowly(self: StoredResult, start: int, size: int) -> bytes | None:
+        if start:
+            held.append(start)
+            go_on.wait(150)
+        return part(self, start, size)
+
+    monkeypatch.setattr(StoredResult, "_part", slowly)
+    many = USER_LIMITS.results
+    with served(require_login=True, data_dir=tmp_path) as client, ThreadPoolExecutor(many) as pool:
+        ada, bob = login(client, "ada"), login(client, "bob")
+        store = state_of(client).jobs.store
+        job = store.add("ada", "stretch", "{}", "key", JobState.WAITING).id
+        store.finish(job, "stretch", "key", gzip.compress(os.urandom(2 * PART_BYTES)))
+        address = f"/api/v1/jobs/{job}/result"
+        answers = [pool.submit(client.get, address, headers=ada) for _ in range(many)]
+        wait_until(lambda: state_of(client).concurrency.held("results", "ada") == many)
+        wait_until(lambda: held)
+        for path in ("jobs", "designs"):
+            assert client.get(f"/api/v1/{path}", headers=bob).status_code == 200
+        assert len(held) == 1
+        go_on.set()
+        assert {answer.result().status_code for answer in answers} == {200}
 
 
 def test_a_user_reads_few_results_at_once(client: TestClient, result: str) -> None:

@@ -1,3 +1,4 @@
+import asyncio
 import logging
 import threading
 from collections.abc import Iterator
@@ -13,8 +14,13 @@ from itsdangerous import URLSafeTimedSerializer
 from app.service.main import THREADS, create_app
 from app.service.settings import Settings
 from app.service.web.bodies import MAX_VALUES
-from app.service.web.security import LOGIN_FAILURES, PAGE_POLICY, with_own_cookie_only
-from app.service.web.sessions import Login, Tokens
+from app.service.web.security import (
+    LOGIN_FAILURES,
+    PAGE_POLICY,
+    AccessControl,
+    with_own_cookie_only,
+)
+from app.service.web.sessions import Login, NotRememberedError, Tokens
 from app.viewer import relay
 from knitcore import InputError
 from tests.app.clients import bearing, closed_with, login, served, state_of, tokens_of, watching
@@ -40,6 +46,23 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A service where everybody has a token of their own."""
     with guarded_service(require_login=True, data_dir=tmp_path_factory.mktemp("lab")) as client:
         yield client
+
+
+def test_requests_that_come_at_once_look_for_their_login_once() -> None:
+    looks = list[bool]()
+
+    def login(*, at_once: bool = False) -> str:
+        if not looks and at_once:
+            raise NotRememberedError("ada")
+        looks.append(at_once)
+        return "ada"
+
+    async def come() -> list[str]:
+        control = AccessControl(lambda *_: None, Settings(require_login=True))  # type: ignore[arg-type]
+        return await asyncio.gather(*(control._known({}, login) for _ in range(9)))
+
+    assert asyncio.run(come()) == 9 * ["ada"]
+    assert looks.count(False) == 1
 
 
 def test_beyond_loopback_a_token_is_demanded() -> None:
