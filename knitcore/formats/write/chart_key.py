@@ -128,6 +128,8 @@ def _note_lines(style: ChartStyle) -> list[str]:
 def multiple_words(repeat: StitchChart, edge_columns: int, edge_rows: int) -> str:
     """How many stitches and rows a repeat takes, with those that are left at the edges."""
     stitches = f"multiple of {repeat.columns}" + (f" + {edge_columns}" if edge_columns else "")
+    if repeat.rows == 1:
+        return f"{stitches} sts"
     rows = f"multiple of {repeat.rows}" + (f" + {edge_rows}" if edge_rows else "")
     return f"{stitches} sts, {rows} rows"
 
