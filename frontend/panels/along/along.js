@@ -90,7 +90,7 @@ export function create(studio) {
     "Knit along",
     h(
       "div",
-      { class: "along-tools line gap-8" },
+      { class: "along-tools line wrap gap-8" },
       ways,
       h("label", { class: "line gap-5 nowrap" }, "Go to row", number),
       textButton(null, "Print", print, { class: "button quiet" }),
