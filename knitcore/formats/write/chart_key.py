@@ -126,7 +126,11 @@ def _note_lines(style: ChartStyle) -> list[str]:
 
 
 def multiple_words(repeat: StitchChart, edge_columns: int, edge_rows: int) -> str:
-    """How many stitches and rows a repeat takes, with those that are left at the edges."""
+    """How many stitches and rows a repeat takes, with those that are left at the edges.
+
+    >>> multiple_words(StitchChart.parse("KKPP"), 2, 0)
+    'multiple of 4 + 2 sts'
+    """
     stitches = f"multiple of {repeat.columns}" + (f" + {edge_columns}" if edge_columns else "")
     if repeat.rows == 1:
         return f"{stitches} sts"
