@@ -104,13 +104,15 @@ class SceneWriter:
             self._side = side
             self._place_camera(everybody=True)
 
-    def fit(self, client: int, aspect: float) -> None:
+    def fit(self, client: viser.ClientHandle) -> None:
         """Place the cameras again that nobody has turned if a view has got another shape."""
-        narrow = min(aspect, ASPECT)
+        number, narrow = client.client_id, min(client.camera.aspect, ASPECT)
         with self._lock:
-            if abs(np.log(narrow / self._narrow.get(client, ASPECT))) > REFRAMED:
-                self._narrow[client] = narrow
+            if abs(np.log(narrow / self._narrow.get(number, ASPECT))) > REFRAMED:
+                before = self._placed.get(number)
                 self._place_camera(everybody=False)
+                if self._placed.get(number) is not before:  # a new one first stands elsewhere
+                    self._narrow[number] = narrow
 
     def redraw(self) -> None:
         """Draw the same again if it should be finer or coarser now."""

@@ -220,7 +220,7 @@ def new_view() -> View:
     @server.on_client_connect
     def stay_in_sight(client: viser.ClientHandle) -> None:
         client.camera.max_orbit_distance = FARTHEST
-        client.camera.on_update(lambda camera: writer.fit(client.client_id, camera.aspect))
+        client.camera.on_update(lambda _: writer.fit(client))
 
     return View(server, writer)
 

@@ -242,6 +242,17 @@ def test_a_first_visit_on_a_phone_begins_with_the_chart(visitor: Page, service: 
     expect(page.locator("#ink-purl")).to_be_in_viewport(ratio=1)
 
 
+def test_a_menu_is_not_covered_by_the_name_of_its_button(flat_studio: Page) -> None:
+    flat_studio.hover("#material-button .ellipsis")
+    expect(flat_studio.locator(".tip")).to_be_visible()
+    flat_studio.click("#material-button")
+    expect(flat_studio.locator("#material-menu")).to_be_visible()
+    flat_studio.mouse.move(600, 600)
+    flat_studio.hover("#material-button .ellipsis")
+    flat_studio.wait_for_timeout(300)
+    expect(flat_studio.locator(".tip")).to_be_hidden()
+
+
 def test_chart_and_cloth_have_the_whole_screen_of_a_phone(flat_studio: Page) -> None:
     """Their drawer is closed until it is needed."""
     page = flat_studio

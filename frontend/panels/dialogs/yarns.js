@@ -43,7 +43,9 @@ export function create(studio) {
   const element = dialog(
     "yarns-dialog",
     "Own yarns",
-    remark("Everybody who uses this service can knit with them; only the person who added a yarn can change or remove it."),
+    remark(
+      "Everybody who uses this service can knit with them; only the person who added a yarn can change or remove it.",
+    ),
     status,
     list,
     h(

@@ -22,7 +22,7 @@ def view(monkeypatch: pytest.MonkeyPatch) -> Iterator[View]:
     """A view at which somebody looks."""
     view = new_view()
     camera = SimpleNamespace(position=np.zeros(3), aspect=ASPECT)
-    client = SimpleNamespace(camera=camera, atomic=contextlib.nullcontext)
+    client = SimpleNamespace(camera=camera, client_id=0, atomic=contextlib.nullcontext)
     monkeypatch.setattr(view.server, "get_clients", lambda: {0: client})
     yield view
     view.stop()
@@ -179,14 +179,26 @@ def test_a_narrow_view_is_seen_from_farther_and_a_turned_camera_stays(view: View
     wide = np.array(client.camera.position)
     for aspect, farther in ((0.46, True), (0.45, True), (2.0, False)):
         client.camera.aspect = aspect
-        view.writer.fit(0, aspect)
+        view.writer.fit(client)
         distance = np.linalg.norm(client.camera.position)
         assert (distance > 1.5 * np.linalg.norm(wide)) == farther
     np.testing.assert_allclose(client.camera.position, wide)
     client.camera.position = close = np.array([0.01, 0.02, 0.05])
     client.camera.aspect = 0.46
-    view.writer.fit(0, 0.46)
+    view.writer.fit(client)
     np.testing.assert_array_equal(client.camera.position, close)
+
+
+def test_a_view_that_opens_narrow_is_placed_once_its_camera_stands(view: View) -> None:
+    """A client tells its shape before its camera stands where all do."""
+    (client,) = view.server.get_clients().values()
+    client.camera.aspect = 0.46
+    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 6)})
+    client.camera.position = np.full(3, 3.0)
+    view.writer.fit(client)
+    client.camera.position = start = np.array(view.server.initial_camera.position)
+    view.writer.fit(client)
+    assert np.linalg.norm(client.camera.position) > np.linalg.norm(start)
 
 
 def test_the_light_between_the_yarn_is_sent_with_its_corners(
