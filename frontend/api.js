@@ -39,16 +39,16 @@ const UNREACHABLE = {
   type: "offline",
   title: "The service cannot be reached",
   status: 0,
-  detail: "No answer came from the service.",
+  detail: "The service cannot be reached",
   remedy: "Your chart is saved in this browser. Continue painting; the numbers return when the service does.",
 };
 
-/** What is said of a file that cannot be imported. @param {string} detail @param {string} remedy @returns {Problem} */
+/** What is said of a file that cannot be imported. @param {string} detail @param {string | null} [remedy] @returns {Problem} */
 export const refusal = (detail, remedy) => ({
   type: "input",
   title: "This chart cannot be imported",
   status: 422,
-  detail,
+  detail: detail.replace(/^(Chart|Knitout|Rows): (line )?/, (_, __, line) => (line ? "Line " : "")),
   remedy,
 });
 

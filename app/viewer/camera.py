@@ -16,7 +16,8 @@ FIELD_OF_VIEW = 0.5
 """Vertical angle of view, radians: a long lens, so that loops at the edge look like those in the
 middle."""
 ASPECT = 1.25
-"""Width over height of the view that a fabric must fit in; panels are rarely narrower."""
+"""Width over height of the view that a fabric fits in from where cameras stand. For a narrower one,
+as on the whole screen of a phone, they stand farther away."""
 MARGIN = 1.3
 """Room around the fabric, over its size."""
 LIFT = 0.08
@@ -45,13 +46,16 @@ _TOWARDS: dict[CameraSide, tuple[tuple[float, float, float], tuple[float, float,
 }
 
 
-def stand(side: CameraSide, extent: Array, below: float = 0.0) -> tuple[Array, Array, Array]:
+def stand(
+    side: CameraSide, extent: Array, below: float = 0.0, aspect: float = ASPECT
+) -> tuple[Array, Array, Array]:
     """Position, target and up direction of a camera that sees the whole fabric.
 
     Parameters
     ----------
     extent : width and height of the fabric, whose middle is the origin.
     below : how far below it there is something to be seen, too, in the same unit.
+    aspect : width of the view over its height.
 
     Returns
     -------
@@ -64,7 +68,7 @@ def stand(side: CameraSide, extent: Array, below: float = 0.0) -> tuple[Array, A
     nearer = (abs(direction[0]) * width + abs(direction[1]) * height) / 2
     if side is CameraSide.EDGE:
         height = 0.3 * width
-    needed = MARGIN * max(height, width / ASPECT) / 2
+    needed = MARGIN * max(height, width / min(aspect, ASPECT)) / 2
     if side is not CameraSide.EDGE:
         needed = max(needed, (height / 2 + below) / (1 - LIFT))
     aim = LIFT * needed * up
@@ -72,7 +76,13 @@ def stand(side: CameraSide, extent: Array, below: float = 0.0) -> tuple[Array, A
 
 
 def place_camera(
-    server: viser.ViserServer, side: CameraSide, extent: Array, below: float, *, everybody: bool
+    server: viser.ViserServer,
+    side: CameraSide,
+    extent: Array,
+    below: float,
+    placed: dict[int, Array],
+    *,
+    everybody: bool,
 ) -> None:
     """Place the camera, that of later ones too, so that the whole fabric is seen.
 
@@ -81,6 +91,7 @@ def place_camera(
     server : whose cameras.
     side : from which the fabric is seen.
     extent, below : as for :func:`stand`.
+    placed : where the camera of each client was placed last; brought up to date.
     everybody : also those who have turned or moved their camera since it was placed.
     """
     position, aim, up = stand(side, extent, below)
@@ -90,9 +101,12 @@ def place_camera(
     start.up = up
     start.look_at = aim
     start.position = position
-    for client in server.get_clients().values():
-        if not everybody and not np.allclose(client.camera.position, before, rtol=MOVED):
+    for number, client in server.get_clients().items():
+        last = placed.get(number, before)
+        if not everybody and not np.allclose(client.camera.position, last, rtol=MOVED):
             continue
+        position, aim, _ = stand(side, extent, below, client.camera.aspect)
+        placed[number] = position
         with client.atomic():
             client.camera.fov = FIELD_OF_VIEW
             client.camera.up_direction = up

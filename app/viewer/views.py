@@ -215,11 +215,14 @@ def new_view() -> View:
     scene.add_light_directional("/light/key", intensity=2.6, position=(-70.0, 100.0, 90.0))
     scene.add_light_directional("/light/back", intensity=2.6, position=(70.0, 100.0, -90.0))
 
+    writer = SceneWriter(server)
+
     @server.on_client_connect
     def stay_in_sight(client: viser.ClientHandle) -> None:
         client.camera.max_orbit_distance = FARTHEST
+        client.camera.on_update(lambda _: writer.fit(client))
 
-    return View(server, SceneWriter(server))
+    return View(server, writer)
 
 
 def clicked_stitch(

@@ -34,7 +34,7 @@ export const LOOK = [
   }),
   action(
     "symbols",
-    "Look: colours and symbols, colours, symbols, loops",
+    "Draw the stitches in another way: symbols, colours, loops",
     ["V"],
     { icon: "symbols" },
     ({ studio: { editing } }) => {

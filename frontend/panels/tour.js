@@ -35,7 +35,7 @@ const STOPS = [
   {
     at: "#inspector",
     title: "The whole cloth in numbers",
-    text: "How stiff it is along its rows and its columns, with an interval and where the numbers come from, and your cloth among the four fabrics that were measured.",
+    text: "How far it stretches along its rows and its columns and how large it is, with an interval and where the numbers come from, and your cloth among the four fabrics.",
   },
   {
     at: "#stretch",

@@ -92,13 +92,17 @@ export function inWords({ columns, units, width_mm, length_mm, narrowing_is_posi
     .join(", ");
 }
 
-/** What still has to be said before there is a law, in words. @param {TableResult} test */
-export const openQuestions = ({ missing, doubts }) => [
-  ...missing.map((quantity) =>
-    quantity === "strain_along" ? "strain or extension" : (QUANTITIES[quantity] ?? quantity),
-  ),
-  ...doubts.filter(({ is_open }) => is_open).map(({ problem }) => problem),
+/** What hinders a law, as sentences: what is missing, or else what is wrong; and what has to be answered. @param {TableResult} test */
+export const hindrances = ({ missing, problem, doubts }) => [
+  ...(missing.length ? [`Still needed: ${missing.map(needed).join(", ")}.`] : (problem ?? [])),
+  ...doubts.filter(({ is_open }) => is_open).map((doubt) => doubt.problem),
 ];
+
+/** @param {string} quantity that a table lacks */
+const needed = (quantity) =>
+  ["width_mm", "length_mm"].includes(quantity)
+    ? `the ${QUANTITIES[quantity]}`
+    : `a column of ${quantity === "strain_along" ? "strain or extension" : (QUANTITIES[quantity] ?? quantity)}`;
 
 /** Doubts that may be answered, of a test or of both. @param {DoubtResult[]} doubts */
 export const answerable = (doubts) => doubts.filter(({ readings }) => readings.length);

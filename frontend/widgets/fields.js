@@ -10,6 +10,14 @@ const MM_PER_INCH = 25.4;
 /** @param {Record<string, unknown>} more its properties */
 export const numberField = (more) => h("input", { type: "number", class: "number figures framed rounded", ...more });
 
+/** What is wrong with a field for a number, by the name that it has on the page; "" if nothing is. @param {HTMLInputElement} field */
+export function numberFault(field) {
+  const { rangeOverflow, rangeUnderflow, badInput, valueMissing } = field.validity;
+  if (!(rangeOverflow || rangeUnderflow || badInput || valueMissing)) return "";
+  const name = field.ariaLabel ?? field.closest("label")?.firstElementChild?.firstChild?.textContent;
+  return `${name}: enter ${field.min}${field.max ? ` to ${field.max}` : " or more"}.`;
+}
+
 /** A field for a name. @param {Record<string, unknown>} more properties @param {number} [most] characters */
 export function nameField(more, most) {
   const field = h("input", { type: "text", ...more });

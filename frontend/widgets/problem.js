@@ -50,6 +50,7 @@ export async function attempt(status, work, again = () => void attempt(status, w
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     status.replaceChildren(problemBox(error.problem, () => void again()));
+    status.scrollIntoView({ block: "nearest" }); // it may lie below a long form
     return null;
   }
 }

@@ -37,7 +37,7 @@ export function tips() {
     if (shown?.element === element) return;
     hide();
     const { title } = element;
-    if (!title || !element.isConnected) return;
+    if (!title || !element.isConnected || element.closest("[aria-haspopup][aria-expanded=true]")) return; // on the menu
     shown = { element, title };
     element.removeAttribute("title"); // the browser would show it, too
     const [head, ...more] = title.split("\n");

@@ -402,8 +402,10 @@ def _cautions(
     around = palm.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / around - 1) > PALM_TOLERANCE:
         cautions.append(
-            f"The fingers need {rows} rows around the hand, the palm's circumference {around} rows "
-            f"of {fabric}: change the ease of the palm, or the circumferences of the fingers."
+            f"The fingers need {rows} rows around the hand, the hand itself {around} rows of "
+            f"{fabric}: it will be {100 * abs(rows / around - 1):.0f} % "
+            f"{'narrower' if rows < around else 'wider'} than planned. "
+            "Another ease of the fingers or fabric of the hand changes that."
         )
     return tuple(cautions)
 
@@ -424,7 +426,8 @@ def _wrist_cautions(
     rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, support, Direction.WALE)
     needed = gauge.rows_for(rest, multiple=2)
     if needed >= rows:
-        return (f"For {mmhg:g} mmHg the wrist support takes {needed} rows; it has {rows}.",)
+        more = ", so it presses more" if needed > rows else ""
+        return (f"For {mmhg:g} mmHg the wrist support takes {needed} rows; it has {rows}{more}.",)
     return (
         f"For {mmhg:g} mmHg the wrist support takes {needed} of the {rows} rows ({rest:.0f} mm): "
         f"turn {rows - needed} rows, in pairs, at its edge to the hand (short rows).",

@@ -52,9 +52,7 @@ def _any_chart(material: Material) -> Suitability:
     worst = max(material.fabrics, key=lambda fabric: max(_errors(material, fabric)))
     if max(_errors(material, worst)) <= ROUGH_LOG_STRESS:
         return Suitability(name, Serves.YES)
-    return Suitability(
-        name, Serves.ROUGHLY, f"a swatch of {worst}, hung or tested, narrows it most"
-    )
+    return Suitability(name, Serves.ROUGHLY, f"a swatch of {worst}, hung or tested")
 
 
 def _under_load(material: Material) -> list[Suitability]:

@@ -8,6 +8,7 @@ from PIL import Image
 from playwright.sync_api import Page, ViewportSize, expect
 
 from tests.browser.axe import THEMES, violations
+from tests.browser.conftest import flat, wait_for_numbers
 from tests.browser.page import drop, kept_chart, purls, settle
 
 
@@ -17,6 +18,21 @@ def open_yarn_form(page: Page) -> None:
     page.click("#yarn-new")
     for summary in page.locator("#yarn-maker summary").all():
         summary.click()
+
+
+def open_swatch_form(page: Page) -> None:
+    """A yarn measured at home, at its photos."""
+    page.keyboard.press("Shift+Y")
+    page.click("#yarn-swatch")
+    for field, value in (("name", "Mine"), ("stitches", "20"), ("rows", "28")):
+        page.locator(f"#swatch-{field}").evaluate("(field, value) => (field.value = value)", value)
+    page.click("#swatch-step-4")
+
+
+def open_planner(page: Page) -> None:
+    """A plan with an own gauge, which has the widest rows."""
+    page.keyboard.press("Control+Shift+G")
+    page.check("#planner-own-gauge")
 
 
 MENUS = ["designs", "material", "export"]
@@ -29,7 +45,7 @@ PANELS: dict[str, Callable[[Page], None]] = {
     "gallery-dialog": lambda page: page.keyboard.press("Shift+N"),
     "versions-dialog": lambda page: page.keyboard.press("Control+s"),
     "share-dialog": lambda page: page.click("#action-share"),
-    "planner-dialog": lambda page: page.keyboard.press("Control+Shift+G"),
+    "planner-dialog": open_planner,
     "export-dialog": lambda page: page.keyboard.press("Control+e"),
     "panel-regions": lambda page: page.keyboard.press("Shift+A"),
     "panel-repeats": lambda page: page.keyboard.press("Shift+L"),
@@ -216,6 +232,27 @@ def test_parts_and_targets_leave_the_chart_in_sight_on_a_phone(flat_studio: Page
     expect(page.locator("#part-add")).to_be_in_viewport()
 
 
+def test_a_first_visit_on_a_phone_begins_with_the_chart(visitor: Page, service: str) -> None:
+    """No drawer covers the patterns to paint with."""
+    page = flat(visitor)
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(service)
+    wait_for_numbers(page)
+    expect(page.locator("#stretch-run")).to_be_hidden()
+    expect(page.locator("#ink-purl")).to_be_in_viewport(ratio=1)
+
+
+def test_a_menu_is_not_covered_by_the_name_of_its_button(flat_studio: Page) -> None:
+    flat_studio.hover("#material-button .ellipsis")
+    expect(flat_studio.locator(".tip")).to_be_visible()
+    flat_studio.click("#material-button")
+    expect(flat_studio.locator("#material-menu")).to_be_visible()
+    flat_studio.mouse.move(600, 600)
+    flat_studio.hover("#material-button .ellipsis")
+    flat_studio.wait_for_timeout(300)
+    expect(flat_studio.locator(".tip")).to_be_hidden()
+
+
 def test_chart_and_cloth_have_the_whole_screen_of_a_phone(flat_studio: Page) -> None:
     """Their drawer is closed until it is needed."""
     page = flat_studio
@@ -244,7 +281,7 @@ CUT_OFF = """(id) => {
         .filter((part) => part.checkVisibility() && !part.closest(".yarn-fabrics")) // that scrolls
         .filter((part) => {
             const box = part.getBoundingClientRect();
-            const thin = part.matches(".text-field") && box.width < 100;
+            const thin = part.matches(".text-field") && box.width < 80;
             return box.left < left || box.right > right || thin;
         })
         .map((part) => part.id || part.textContent);
@@ -256,7 +293,7 @@ def test_panels_are_whole_and_do_not_scroll_sideways_on_a_phone(flat_studio: Pag
     page = flat_studio
     page.set_viewport_size({"width": 360, "height": 780})
     page.keyboard.press("x")  # a chart with something in it can be resized in three ways
-    for name, open_panel in PANELS.items():
+    for name, open_panel in [*PANELS.items(), ("yarns-dialog", open_swatch_form)]:
         page.evaluate("document.activeElement.blur()")
         open_panel(page)
         expect(page.locator(f"#{name}")).to_be_visible()

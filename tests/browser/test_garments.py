@@ -55,12 +55,20 @@ def test_a_brace_for_a_pressure_shows_its_pressure(flat_studio: Page) -> None:
     by_pressure = support.inner_text()
     with page.expect_response("**/garment"):
         page.locator("input[name=planner-fit][value=ease]").check(force=True)
-    expect(support).to_contain_text("−14 %")
+    expect(support).to_contain_text("−15 %")
     assert support.inner_text() != by_pressure
     page.get_by_label("Around the wrist").fill("5000")
     problem = page.locator("#planner-dialog .problem")
     expect(problem).to_contain_text("Around the wrist: enter 80 to 350 mm.")
     expect(page.locator("#planner-make")).to_be_disabled()
+    page.get_by_label("Around the wrist").fill("170")
+    page.get_by_label("Ease, %").fill("")
+    expect(problem).to_contain_text("Ease, %: enter -60 to 100.")
+    page.locator("input[name=planner-fit][value=pressure]").check(force=True)
+    expect(page.locator("#planner-make")).to_be_enabled()
+    page.fill("#planner-target", "900")
+    expect(problem).to_contain_text("Target pressure, mmHg: enter 1 to 300.")
+    expect(problem).to_be_in_viewport()
 
 
 def test_a_glove_tells_where_it_is_too_tight(flat_studio: Page) -> None:
@@ -88,6 +96,7 @@ def test_every_place_of_a_sleeve_is_shown_and_choices_outlast_another_garment(
         page.locator("input[name=planner-fit][value=ease]").check(force=True)
     page.get_by_label("Ease, %").fill("-20")
     page.get_by_label("Body", exact=True).select_option("garter")
+    page.select_option("#planner-material", "cotton")
     expect(page.locator("#planner-make")).to_be_enabled()
     count = len(planned.value.json()["worn"])
     assert count > 9
@@ -97,6 +106,7 @@ def test_every_place_of_a_sleeve_is_shown_and_choices_outlast_another_garment(
     expect(page.get_by_label("Ease, %")).to_have_value("-20")
     _plan_again(page, "glove")
     expect(page.get_by_label("Ease of fingers and thumb, %")).to_have_value("5")
+    expect(page.locator("#planner-material")).to_have_value("cotton")
 
 
 @pytest.mark.slow
@@ -133,6 +143,21 @@ def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:
     assert exported(page, "knitout").suggested_filename.endswith(".k")
     expect(page.locator("#export-outcome")).to_contain_text("Knitted on a virtual V-bed machine")
     expect(page.locator("#program-report")).to_contain_text("min without stops")
+
+
+def test_options_and_result_are_in_sight_with_the_last_format(flat_studio: Page) -> None:
+    page = flat_studio
+    for width, height in ((1280, 720), (820, 1180), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.focus("#chart")
+        page.keyboard.press("Control+E")
+        page.locator("input[name=export-kind][value=punch-card]").check()
+        expect(page.locator("#export-dialog select:visible")).to_be_in_viewport()
+        page.locator("input[name=export-kind][value=csv]").check()
+        with page.expect_download():
+            page.locator("#export-make").click()
+        expect(page.locator("#export-outcome li").first).to_be_in_viewport()
+        page.keyboard.press("Escape")
 
 
 def test_a_pattern_has_a_picture_where_nothing_is_drawn_in_3d(flat_studio: Page) -> None:

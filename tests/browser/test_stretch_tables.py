@@ -30,9 +30,11 @@ def test_a_table_of_a_tester_is_mapped_once_and_known_again(flat_studio: Page) -
     page.select_option("#yarn-dropped-fabric", "rib")
     page.click("#yarn-dropped-use")
     half = page.locator("#yarn-rib-reading .test-half")
-    expect(half).to_contain_text("Say strain or extension, force, width")
+    expect(half).to_contain_text(
+        "Still needed: a column of strain or extension, a column of force, the width."
+    )
     page.get_by_label("Ch 1 holds").select_option("extension_mm")
-    expect(half).to_contain_text("force, width, distance of the clamps")
+    expect(half).to_contain_text("the width, the distance of the clamps")
     page.get_by_label("Ch 2 (N) holds").select_option("force_n")
     expect(page.get_by_label("Unit of Ch 1")).to_contain_text("mm, not stated")
     assert violations_in_both_themes(page, "#yarns-dialog") == []
@@ -53,7 +55,7 @@ def test_a_table_of_a_tester_is_mapped_once_and_known_again(flat_studio: Page) -
     expect(again).to_contain_text("Read as a table with the same heads was")
     expect(again.locator(".pulls-plot")).to_be_visible()
     again.get_by_text("Read it as it stands").click()
-    expect(again).to_contain_text("Say strain or extension")
+    expect(again).to_contain_text("Still needed: a column of strain or extension")
     page.fill("#yarn-name", "Mine")
     page.fill("#yarn-rib-stitches", "20")
     page.fill("#yarn-rib-rows", "25")
@@ -141,4 +143,4 @@ def test_a_table_without_names_is_mapped_and_not_taken_for_another(flat_studio: 
     other = {"name": "other.csv", "mimeType": "text/csv", "buffer": bare}
     page.set_input_files("#yarn-rib-along-columns", files=[other])
     again = page.get_by_label("other.csv, along the columns")
-    expect(again).to_contain_text("Say strain or extension")
+    expect(again).to_contain_text("Still needed: a column of strain or extension")

@@ -11,6 +11,7 @@ import { WAYS, alongRequest, alongRows, repeatWords, stepOf } from "../../servic
 import { Awake } from "../../services/awake.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
+import { numberField } from "../../widgets/fields.js";
 import { attempt } from "../../widgets/problem.js";
 import { rowPicture } from "./picture.js";
 
@@ -32,7 +33,7 @@ export function create(studio) {
   const ways = h(
     "select",
     {
-      class: "select",
+      class: "text-field shrinks-x rounded",
       "aria-label": "How it is knitted",
       onchange: () => {
         way = ways.value;
@@ -42,12 +43,9 @@ export function create(studio) {
     },
     ...Object.entries(WAYS).map(([value, words]) => h("option", { value }, words)),
   );
-  const number = h("input", {
-    class: "text-field number",
-    type: "number",
+  const number = numberField({
     min: "1",
     inputMode: "numeric",
-    "aria-label": "Go to row",
     onchange: () => {
       if (Number.isInteger(number.valueAsNumber)) go(number.valueAsNumber);
       else show();
@@ -79,7 +77,7 @@ export function create(studio) {
   const counter = h(
     "div",
     { class: "along-counter line gap-8", role: "group", "aria-label": "A counter of your own" },
-    h("span", {}, "Count"),
+    h("span", {}, "Your counter"),
     iconButton("minus", "Count down", () => tally(place.count - 1)),
     count,
     iconButton("plus", "Count up", () => tally(place.count + 1)),
@@ -92,10 +90,10 @@ export function create(studio) {
     "Knit along",
     h(
       "div",
-      { class: "along-tools line gap-8" },
+      { class: "along-tools line wrap gap-8" },
       ways,
-      h("label", { class: "line gap-5" }, "Row", number),
-      textButton("copy", "Print", print, { class: "button quiet" }),
+      h("label", { class: "line gap-5 nowrap" }, "Go to row", number),
+      textButton(null, "Print", print, { class: "button quiet" }),
     ),
     bar,
     status,
@@ -160,7 +158,12 @@ export function create(studio) {
     words.replaceChildren(...lines.map((line) => h("p", {}, capital(line))), ...(index < 0 ? notes.map(remarkOf) : []));
     picture.hidden = !worked;
     if (worked) {
-      picture.replaceChildren(rowPicture(along, index, studio.editing.symbols.value, picture.clientWidth));
+      const { marked, needles } = along;
+      const isMarked = needles.length > 0 && worked.stitches.includes("P");
+      picture.replaceChildren(
+        rowPicture(along, index, studio.editing.symbols.value, picture.clientWidth),
+        isMarked ? h("p", { class: "small" }, h("span", { class: "along-marked" }), marked) : "",
+      );
       picture.scrollLeft = worked.leftwards ? picture.scrollWidth : 0;
     }
     const then = rows[place.row];
@@ -178,7 +181,9 @@ export function create(studio) {
 
   /** @param {KnitAlongResult["rows"][number]} worked */
   const sideOf = ({ heading: words, leftwards }) =>
-    along?.needles.length ? `${capital(words)}, goes to the ${leftwards ? "left ←" : "right →"}` : capital(words);
+    along?.needles.length
+      ? `${capital(words)}, goes to the ${leftwards ? "left\u00a0←" : "right\u00a0→"}`
+      : capital(words);
 
   /** @param {string} text */
   const remarkOf = (text) => h("p", { class: "muted small" }, text);

@@ -14,13 +14,13 @@ import { actionButton } from "../../widgets/buttons.js";
 import { fullButton } from "../../widgets/full.js";
 
 /** @type {Record<Symbols, string>} */
-const SYMBOLS = { dots: "dots", dashes: "dashes", japanese: "Japanese" };
+const SYMBOLS = { dots: "Dots", dashes: "Dashes", japanese: "Japanese" };
 /** What a purl has, and a knit. @type {Record<Symbols, string>} */
 const SAID = { dots: "a purl has a dot", dashes: "a purl has a dash", japanese: "a knit is upright, a purl is a dash" };
 /** The looks that have symbols come in each kind. */
 const LOOKS = {
-  "Colours with": /** @type {const} */ ("both"),
-  "Paper with": /** @type {const} */ ("symbols"),
+  "on colours": /** @type {const} */ ("both"),
+  "on paper": /** @type {const} */ ("symbols"),
 };
 
 /** @param {HTMLElement} host @param {ActionContext} context */
@@ -68,16 +68,12 @@ export function chartstrip(host, context) {
         editing.look.value = /** @type {Look} */ (chosen);
       },
     },
-    ...Object.entries(LOOKS).map(([label, drawn]) =>
-      h(
-        "optgroup",
-        { label: `${label} …` },
-        ...Object.entries(SYMBOLS).map(([symbols, words]) =>
-          h("option", { value: `${drawn} ${symbols}` }, `${label.split(" ")[0]}, ${words}`),
-        ),
+    ...Object.entries(LOOKS).flatMap(([ground, drawn]) =>
+      Object.entries(SYMBOLS).map(([symbols, words]) =>
+        h("option", { value: `${drawn} ${symbols}` }, `${words} ${ground}`),
       ),
     ),
-    h("option", { value: "colours" }, "Colours alone"),
+    h("option", { value: "colours" }, "No symbols"),
     h("option", { value: "loops" }, "Loops"),
   );
   const showLook = () => {

@@ -2,6 +2,7 @@
  * What to paint with: knit, purl, their opposite, no stitch, a region, whole patterns, and patterns of one's own.
  *
  * @import {ActionContext} from "../../actions/action.js"
+ * @import {Symbols} from "../../state/editing.js"
  * @import {Palette} from "../../state/palette.js"
  * @import {Ink} from "../../design/ink.js"
  * @import {Studio} from "../../state/studio.js"
@@ -65,7 +66,8 @@ export function shelf(host, studio, context) {
     const own = ownPatterns(chart.shelf, loadShelf()).map(ownInk);
     const region = chosen.target.startsWith("region:") ? [chosen] : [];
     const inks = [KNIT, PURL, FLIP, NO_STITCH, ...region, ...studio.shelf.value, ...own];
-    const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette]);
+    const symbols = studio.editing.symbols.value;
+    const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette, symbols]);
     if (what !== shown) {
       shown = what;
       const swatches = inks.map((ink) => ({ ink, picture: h("img", { class: "thumbnail", alt: "" }) }));
@@ -86,7 +88,7 @@ export function shelf(host, studio, context) {
         ),
       );
       void inTurn(swatches, ({ ink, picture }) => {
-        picture.src = thumbnail(ink, palette, chart.region(ink.target.slice(7))?.colour ?? "");
+        picture.src = thumbnail(ink, palette, symbols, chart.region(ink.target.slice(7))?.colour ?? "");
       });
     }
     for (const element of list.children) {
@@ -106,6 +108,7 @@ export function shelf(host, studio, context) {
     show();
   };
   studio.shelf.watch(show);
+  studio.editing.symbols.listen(show);
   studio.ink.listen((ink) => {
     show();
     document.getElementById(`ink-${ink.id}`)?.scrollIntoView({ block: "nearest", inline: "nearest" });
@@ -121,13 +124,14 @@ export function shelf(host, studio, context) {
  *
  * @param {Ink} ink
  * @param {Palette} palette
+ * @param {Symbols} symbols
  * @param {string} colour of a region
  */
-function thumbnail(ink, palette, colour) {
+function thumbnail(ink, palette, symbols, colour) {
   const side = 2 * SIDE;
   const canvas = h("canvas", { width: side, height: side });
   const context = canvas.getContext("2d", { willReadFrequently: true }); // reading from a GPU would stop it
-  drawThumbnail(/** @type {CanvasRenderingContext2D} */ (context), side, ink, palette, colour);
+  drawThumbnail(/** @type {CanvasRenderingContext2D} */ (context), side, ink, palette, symbols, colour);
   return canvas.toDataURL();
 }
 
@@ -136,9 +140,10 @@ function thumbnail(ink, palette, colour) {
  * @param {number} side in pixels
  * @param {Ink} ink
  * @param {Palette} palette
+ * @param {Symbols} symbols
  * @param {string} colour of a region
  */
-function drawThumbnail(context, side, ink, palette, colour) {
+function drawThumbnail(context, side, ink, palette, symbols, colour) {
   /** @param {number[]} rgb */
   const css = (rgb) => `rgb(${rgb.map(Math.round).join(" ")})`;
   if (ink.target === "outline") {
@@ -164,12 +169,14 @@ function drawThumbnail(context, side, ink, palette, colour) {
       context.lineTo(side, 0);
       context.fill();
     }
-    if (ink === PURL) {
-      context.fillStyle = palette.text;
+    context.fillStyle = palette.text;
+    if (ink === PURL && symbols === "dots") {
       context.beginPath();
       context.arc(side / 2, side / 2, side * 0.13, 0, 2 * Math.PI);
       context.fill();
-    }
+    } else if (ink === PURL) context.fillRect(side * 0.28, side * 0.46, side * 0.44, side * 0.08);
+    else if (ink === KNIT && symbols === "japanese")
+      context.fillRect(side * 0.46, side * 0.28, side * 0.08, side * 0.44);
     return;
   }
   const count = Math.min(MOST, Math.max(6, ink.repeat.rows, ink.repeat.columns));

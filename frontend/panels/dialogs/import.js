@@ -26,13 +26,14 @@ export function create(_, context) {
   const settle = async (outcome) => {
     const wrong = await outcome;
     problem.hidden = wrong === null;
-    if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
-    else element.close();
+    if (wrong) return problem.replaceChildren(icon("warning"), problemText(wrong));
+    text.value = "";
+    element.close();
   };
   const file = h("input", {
     type: "file",
     id: "import-file",
-    accept: ".txt,.json,.k,.ks,.knitout,text/plain,application/json,image/*",
+    accept: ".txt,.json,.k,.ks,.knitout,.csv,.tsv,.xlsx,.xls,.h5,.hdf5,text/plain,application/json,image/*",
     class: "visually-hidden",
     onchange: () => file.files?.[0] && void settle(importFile(context, file.files[0])),
   });
@@ -40,7 +41,7 @@ export function create(_, context) {
     "import-dialog",
     "Import a chart",
     remark(
-      "Lines of K and P (or | and •; blank squares are knits), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page.",
+      "Paste lines of K and P (or | and •), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. Or choose a file, or drop it anywhere on the page: a text, a picture, a project file, or the table of a stretch test, for a yarn of your own.",
     ),
     text,
     problem,
@@ -58,7 +59,6 @@ export function create(_, context) {
   );
   return () => {
     problem.hidden = true;
-    text.value = "";
     element.showModal();
     text.focus();
   };

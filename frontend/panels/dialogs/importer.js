@@ -66,10 +66,7 @@ function importProject({ studio, keeper }, text) {
     return null;
   } catch (error) {
     if (error instanceof SyntaxError) {
-      return refusal(
-        "The project file is damaged: it is not valid JSON.",
-        "Export the design again, or use an older copy.",
-      );
+      return refusal("The project file is damaged or not complete.", "Export the design again, or use an older copy.");
     }
     if (error instanceof DesignError) return refusal(error.message, error.remedy);
     throw error;

@@ -70,6 +70,6 @@ export async function importRead({ studio, keeper }, name, content) {
     return null;
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    return { ...error.problem, title: "This chart cannot be imported" };
+    return refusal(error.problem.detail ?? "", error.problem.remedy);
   }
 }

@@ -15,7 +15,7 @@ import { pixel, readPalette } from "../../state/palette.js";
 import { plainDesign } from "../../design/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
 import { h, remark } from "../../elements/dom.js";
-import { ApiError, api } from "../../api.js";
+import { ApiError, api, refusal } from "../../api.js";
 import { Latest } from "../../services/latest.js";
 import { uploaded } from "../../services/yarns.js";
 import { dialog } from "../../widgets/dialog.js";
@@ -43,7 +43,7 @@ export async function importPicture(context, file) {
     own = await read({});
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    if (error.problem.field !== "columns") return { ...error.problem, title: "This chart cannot be imported" };
+    if (error.problem.field !== "columns") return refusal(error.problem.detail ?? "", error.problem.remedy);
   }
   const bitmap = await createImageBitmap(file).catch(() => null);
   pictureDialog(context, { name: file.name, bitmap, own, read });
@@ -270,7 +270,7 @@ function previews(stitch) {
 
 /** A chart with a pixel for a stitch. @param {Grid} grid @param {ReturnType<typeof readPalette>} palette */
 function drawn({ rows, columns, purl }, palette) {
-  const [light, dark] = [pixel(palette.knit), pixel(palette.dark ? [216, 206, 194] : [92, 80, 68])];
+  const [light, dark] = [pixel(palette.knit), pixel(palette.dark ? [28, 26, 24] : [92, 80, 68])];
   const image = new ImageData(columns, rows);
   const pixels = new Uint32Array(image.data.buffer);
   for (let row = 0, i = 0; row < rows; row++) {

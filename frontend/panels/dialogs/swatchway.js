@@ -32,6 +32,8 @@ const BROUGHT = {
 export function swatchWay(studio, made) {
   const status = h("div", { class: "dialog-status", role: "status" });
   let step = 0;
+  /** Whether the form holds a yarn that is not saved yet. */
+  let isBegun = false;
   /** @type {SwatchResult | null} */
   let known = null;
 
@@ -184,7 +186,10 @@ export function swatchWay(studio, made) {
   const keep = async () => {
     if (!known) return;
     const document = { ...known.material, identifier: identifierOf(known.material.name) };
-    if (await attempt(status, () => adopt(studio, document))) made();
+    if (!(await attempt(status, () => adopt(studio, document)))) return;
+    isBegun = false;
+    element.hidden = true;
+    made();
   };
 
   const sheet = async () => {
@@ -291,8 +296,8 @@ export function swatchWay(studio, made) {
 
   const element = h(
     "section",
-    { class: "yarn-maker", id: "swatch-way", hidden: true, "aria-label": "A yarn without a tester" },
-    h("h3", {}, "A yarn without a tester"),
+    { class: "yarn-maker", id: "swatch-way", hidden: true, "aria-label": "A yarn measured at home" },
+    h("h3", {}, "A yarn measured at home"),
     h("ol", { class: "swatch-steps flex wrap gap-6" }, ...tabs),
     ...pages,
     status,
@@ -301,15 +306,17 @@ export function swatchWay(studio, made) {
 
   return {
     element,
-    /** Begin with nothing known. */
+    /** Begin with nothing known, or go on with what was begun. */
     open() {
+      element.hidden = false;
+      if (isBegun) return;
+      isBegun = true;
       for (const field of [name, fibre, grams, metres, wraps, stitches, rows, weight, width, height, ten, coin])
         field.value = "";
       for (const pull of pulls) pull.clear();
       known = null;
       status.replaceChildren();
       show(0);
-      element.hidden = false;
       name.focus();
     },
   };

@@ -15,7 +15,7 @@ import {
   QUANTITIES,
   answerable,
   asItStands,
-  openQuestions,
+  hindrances,
   changed,
   inWords,
   isSaid,
@@ -29,6 +29,9 @@ import { textButton } from "../../widgets/buttons.js";
 import { labelled, numberField, selectField } from "../../widgets/fields.js";
 import { table } from "../../widgets/table.js";
 import { attempt } from "../../widgets/problem.js";
+
+/** @param {string} unit */
+const unitName = (unit) => (unit === "-" ? "fraction" : unit);
 
 /** @type {readonly (readonly [Direction, string])[]} */
 const DIRECTIONS = [
@@ -159,7 +162,7 @@ export function testReader(fabric, pickers) {
       const choice = selectField(
         {
           "aria-label": `${title} holds`,
-          class: quantity ? "" : "unused",
+          class: `select ${quantity ? "" : "unused"}`,
           onchange: () => void say(direction, withColumn(templates[direction], test, title, choice.value)),
         },
         QUANTITIES,
@@ -174,14 +177,14 @@ export function testReader(fabric, pickers) {
       /** @type {Record<string, string>} */
       const own = unit && !known.includes(unit) ? { [unit]: unit } : {};
       /** @type {Record<string, string>} */
-      const silent = unit ? {} : { "": `${known[0]}, not stated` };
+      const silent = unit ? {} : { "": `${unitName(known[0])}, not stated` };
       const choice = selectField(
         {
           "aria-label": `Unit of ${title}`,
-          class: unit ? "" : "asked",
+          class: `select ${unit ? "" : "asked"}`,
           onchange: () => void say(direction, changed(templates[direction], { units: { [quantity]: choice.value } })),
         },
-        { ...silent, ...own, ...Object.fromEntries(known.map((word) => [word, word === "-" ? "fraction" : word])) },
+        { ...silent, ...own, ...Object.fromEntries(known.map((word) => [word, unitName(word)])) },
       );
       choice.value = unit;
       return h("td", {}, choice);
@@ -219,8 +222,7 @@ export function testReader(fabric, pickers) {
   const half = (direction, along, test) => {
     const template = templates[direction];
     const words = inWords(template);
-    const lacking = test.missing.length ? `Say ${openQuestions({ ...test, doubts: [] }).join(", ")}.` : "";
-    const wrong = lacking || test.problem;
+    const wrong = hindrances({ ...test, doubts: [] }).join(" ");
     const asStands = () => void say(direction, asItStands());
     const save = () => {
       const text = `${JSON.stringify(template, null, 1)}\n`;
@@ -276,7 +278,9 @@ export function testReader(fabric, pickers) {
     /** What has to be answered before a law is fitted; empty if nothing has. */
     open: () => {
       if (!element.hidden && !read) return "Its tests are still being read, or cannot be.";
-      const open = Object.values(read?.tests ?? {}).flatMap((test) => [test.problem ?? [], openQuestions(test)].flat());
+      const open = Object.values(read?.tests ?? {}).flatMap((test) =>
+        hindrances(test).map((words) => (words.includes(test.name) ? words : `${test.name}: ${words}`)),
+      );
       const both = (read?.doubts ?? []).filter(({ is_open }) => is_open).map(({ problem }) => problem);
       return [...open, ...both].join(" ");
     },

@@ -37,6 +37,8 @@ export function yarnMaker(studio, made) {
   const run = new Run();
   /** The yarn that is changed; null for a new one. @type {MaterialDocument | null} */
   let base = null;
+  /** Whether the form holds a yarn that is not saved yet. */
+  let isBegun = false;
   /** The yarn of which its user has seen what it lacks. */
   let seen = "";
   /** Where the figures come from, by subject. @type {Map<string, string>} */
@@ -140,7 +142,7 @@ export function yarnMaker(studio, made) {
   const make = async () => {
     if (!name.value.trim()) return say("The yarn has no name", "Give it one.");
     const half = rows.find(({ incomplete }) => incomplete());
-    if (half) return say(`The ${half.fabric} is not complete`, `${half.incomplete()}`);
+    if (half) return say(`${capital(half.fabric)} is not complete`, half.incomplete());
     const fitted = await fittedFabrics();
     if (!fitted) return;
     const known = yarnOf(base, name.value.trim(), figures(), fitted, [...evidence.values()]);
@@ -168,7 +170,10 @@ export function yarnMaker(studio, made) {
       seen = text;
       return status.replaceChildren(remark("Some uses need more. Add it, or save the yarn as it is."), usesList(uses));
     }
-    if (await attempt(status, () => adopt(studio, whole))) made();
+    if (!(await attempt(status, () => adopt(studio, whole)))) return;
+    isBegun = false;
+    element.hidden = true;
+    made();
   };
 
   /** @param {MaterialDocument} known @param {readonly Fabric[]} lacking @param {boolean} bends whether it is known how */
@@ -180,7 +185,7 @@ export function yarnMaker(studio, made) {
     return { ...known, fabrics: { ...known.fabrics, ...fabrics }, note: distinctLines(known.note ?? "", ...warnings) };
   };
 
-  const title = h("h3", {}, "Make a yarn");
+  const title = h("h3", {}, "A yarn from stretch tests");
   const dropped = h("div", { class: "test-question line wrap rounded open", id: "yarn-dropped", hidden: true });
   /** Ask which test a table is that was dropped on the page. @param {File} file */
   const offer = (file) => {
@@ -210,7 +215,7 @@ export function yarnMaker(studio, made) {
   };
   const element = h(
     "section",
-    { class: "yarn-maker", id: "yarn-maker", hidden: true, "aria-label": "Make a yarn" },
+    { class: "yarn-maker", id: "yarn-maker", hidden: true, "aria-label": "A yarn from stretch tests" },
     title,
     dropped,
     labelled("Name", name),
@@ -250,7 +255,7 @@ export function yarnMaker(studio, made) {
         which,
       ),
       textButton("play", "Fit the test", () => void squeeze(), { id: "yarn-squeeze-run" }),
-      h("div", { class: "yarn-facts" }, labelled("k", stiffness, "mN/mm³"), labelled("p", exponent)),
+      h("div", { class: "yarn-facts" }, labelled("Stiffness", stiffness, "mN/mm³"), labelled("Exponent", exponent)),
       squeezed,
     ),
     h("h4", {}, "2. The fabrics"),
@@ -279,8 +284,11 @@ export function yarnMaker(studio, made) {
   return {
     element,
     offer,
-    /** Show the form, for a new yarn or with what is known of one. @param {MaterialDocument | null} yarn */
+    /** Show the form, for a new yarn or with what is known of one; a new one that was begun goes on. @param {MaterialDocument | null} yarn */
     open(yarn) {
+      element.hidden = false;
+      if (isBegun && !yarn && !base) return name.focus();
+      isBegun = true;
       base = yarn;
       measured = {};
       evidence.clear();
@@ -288,7 +296,7 @@ export function yarnMaker(studio, made) {
       for (const field of [photos, weight, hanging, squeezes, diameter]) field.value = "";
       for (const message of [bent, squeezed, status]) message.replaceChildren();
       which.hidden = true;
-      title.textContent = yarn ? `Change ${yarn.name}` : "Make a yarn";
+      title.textContent = yarn ? `Change ${yarn.name}` : "A yarn from stretch tests";
       name.value = yarn?.name ?? "";
       bending.value = milli(yarn?.yarn?.bending_modulus_n_mm2);
       stiffness.value = milli(yarn?.yarn?.compression_stiffness_n_per_mm3);
@@ -296,7 +304,6 @@ export function yarnMaker(studio, made) {
       const loops = Object.values(yarn?.fabrics ?? {}).flatMap(({ loop_length_mm }) => loop_length_mm ?? []);
       loop.value = loops.length ? String(Number(loops[0].toPrecision(4))) : "";
       for (const row of rows) row.show(yarn?.fabrics[row.fabric] ?? null);
-      element.hidden = false;
       name.focus();
     },
   };
@@ -350,6 +357,9 @@ const picker = (id, accept, multiple = false) => h("input", { type: "file", id, 
 
 /** @param {number | null | undefined} value in thousandths, or nothing */
 const milli = (value) => (value ? String(Number((1000 * value).toPrecision(3))) : "");
+
+/** @param {string} word */
+const capital = (word) => word.charAt(0).toUpperCase() + word.slice(1);
 
 /** @param {number} mm */
 const perTenCm = (mm) => String(Number((100 / mm).toPrecision(4)));

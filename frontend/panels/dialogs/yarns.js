@@ -44,17 +44,17 @@ export function create(studio) {
     "yarns-dialog",
     "Own yarns",
     remark(
-      "They are offered to everybody who uses this service, and are part of its backups. Only the person who added a yarn can change or remove it.",
+      "Everybody who uses this service can knit with them; only the person who added a yarn can change or remove it.",
     ),
     status,
     list,
     h(
       "div",
       { class: "dialog-tools wrap gap-10" },
-      h("label", { class: "button", for: "yarn-file" }, "Add a yarn file …"),
+      textButton("camera", "Measure it at home …", () => (alone(way), way.open()), { id: "yarn-swatch" }),
+      textButton("plus", "From stretch tests …", () => (alone(maker), maker.open(null)), { id: "yarn-new" }),
+      h("label", { class: "button", for: "yarn-file" }, "From a yarn file …"),
       file,
-      textButton("plus", "Make a yarn …", () => (alone(maker), maker.open(null)), { id: "yarn-new" }),
-      textButton("camera", "Without a tester …", () => (alone(way), way.open()), { id: "yarn-swatch" }),
     ),
     maker.element,
     way.element,
@@ -123,11 +123,9 @@ export function create(studio) {
     status.replaceChildren();
     const { droppedTest } = studio;
     studio.droppedTest = null;
-    way.element.hidden = true;
-    if (!droppedTest) maker.element.hidden = true;
     if (!element.open) element.showModal();
     if (!droppedTest) return;
-    if (maker.element.hidden) maker.open(null);
+    if (maker.element.hidden) (alone(maker), maker.open(null));
     maker.offer(droppedTest);
   };
 }

@@ -51,7 +51,7 @@ export function create(studio, { view }) {
   const sides = choice(
     "export-side",
     "Side of row 1",
-    { RS: "row 1 is a right side", WS: "a wrong side" },
+    { RS: "row 1 is a right side", WS: "row 1 is a wrong side" },
     "RS",
     (value) => (chosen.first_side = value),
   );
@@ -72,7 +72,7 @@ export function create(studio, { view }) {
     finish: choice(
       "export-finish",
       "The last row",
-      { waste: "ends in waste yarn", "bind-off": "is bound off" },
+      { waste: "ends in waste yarn", "bind-off": "last row bound off" },
       "waste",
       (value) => (chosen.finish = value),
     ),
@@ -131,7 +131,7 @@ export function create(studio, { view }) {
       formats,
       h(
         "section",
-        { class: "exports-options gap-12 shrinks-x", "aria-label": "Options and file" },
+        { class: "exports-options gap-12 shrinks-x", "aria-label": "Options and file", tabIndex: 0 },
         ...Object.values(options),
         status,
         outcome,
@@ -232,7 +232,7 @@ export function create(studio, { view }) {
       ...(file.transfers === null
         ? []
         : [
-            `${file.transfers} transfers between the beds, ${file.carriers} ${file.carriers === 1 ? "carrier" : "carriers"}`,
+            `${file.transfers} transfers between the beds, ${file.carriers} ${file.carriers === 1 ? "carrier" : "carriers"} without waste yarn`,
           ]),
       ...file.notes,
     ];
@@ -242,13 +242,14 @@ export function create(studio, { view }) {
       h(
         "ul",
         { class: "planner-notes plain-list stack gap-5 small" },
-        ...facts.map((words) => h("li", {}, icon("check"), words)),
+        ...facts.map((words, i) => h("li", {}, icon(i ? "info" : "check"), words)),
       ),
       text && !to.endsWith("svg")
         ? h("pre", { class: "exports-text rounded sunken", tabIndex: 0, "aria-label": "The file" }, text)
         : "",
       h("div", { class: "dialog-buttons" }, h("button", { class: "button", onclick: save }, "Save it again")),
     );
+    outcome.scrollIntoView({ block: "nearest" });
     save();
   }
 
@@ -258,7 +259,7 @@ export function create(studio, { view }) {
     showHindrances();
     const yarns = new Set(regions.flatMap(({ yarn }) => yarn ?? []));
     note.textContent = [
-      studio.note.value ? "The design's note goes with it." : "A note of the design would go with it.",
+      studio.note.value ? "The design's note goes with it." : "",
       outline ? "The chart has an outline." : "",
       yarns.size ? `Its yarns: ${[...yarns].join(", ")}.` : "",
     ]

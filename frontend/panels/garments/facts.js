@@ -22,6 +22,7 @@ export function facts(garment, unit) {
       h("strong", {}, `${columns} sts × ${rows} rows`),
       ` · ${stitches} stitches · ${figure(yarn_m)} m (${span(yarn_interval_m)}) of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
+    ...garment.warnings.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
     regions(garment, unit),
     remark(
       "Sizes are those of each fabric by itself, from which its stitches are counted. In the piece its neighbours widen or narrow it; a pattern gives those sizes.",
@@ -67,14 +68,14 @@ function sizes({ sizes: all, regions: parts }) {
   ];
 }
 
-/** @param {number} mm @param {string} unit */
-const long = (mm, unit) => (unit === "in" ? `${(mm / 25.4).toFixed(1)} in` : `${mm.toFixed(0)} mm`);
+/** @param {number} mm @param {string} unit @param {string} named after the number */
+const long = (mm, unit, named = ` ${unit}`) => (unit === "in" ? (mm / 25.4).toFixed(1) : mm.toFixed(0)) + named;
 
 /** @param {GarmentResult} garment @param {string} unit */
 function regions({ regions: all }, unit) {
   return table(
     { class: "planner-table figures full-width small" },
-    ["Region", "Stitches", "By itself, at rest", "Yarn", "Extensibility, mm/N"],
+    ["Region", "Stitches × rows", "By itself, at rest", "Yarn", "Extensibility along rows × columns, mm/N"],
     h(
       "tbody",
       {},
@@ -84,7 +85,7 @@ function regions({ regions: all }, unit) {
         return tableRow(
           h("span", {}, swatch, region.name),
           `${region.columns} × ${region.rows}`,
-          `${long(region.width_mm, unit)} × ${long(region.height_mm, unit)}`,
+          `${long(region.width_mm, unit, "")} × ${long(region.height_mm, unit)}`,
           `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`,
           `${figure(region.extensibility_course_mm_per_n)} × ${figure(region.extensibility_wale_mm_per_n)}`,
         );
@@ -94,12 +95,11 @@ function regions({ regions: all }, unit) {
 }
 
 /** @param {GarmentResult} garment @param {string} unit @returns {Node[]} */
-function pressure({ worn, warnings }, unit) {
+function pressure({ worn }, unit) {
   if (!worn.length) return [];
   const pressed = worn.filter(({ ease }) => ease < 0);
   const warned = [...new Set(pressed.flatMap((place) => place.warnings))].filter((words) => !isWarning(words));
   return [
-    ...warnings.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
     table(
       { class: "planner-table figures full-width small", id: "planner-pressure" },
       ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],
@@ -113,7 +113,13 @@ function pressure({ worn, warnings }, unit) {
             long(place.worn_mm, unit),
             percent(place.ease),
             place.mmhg && place.kpa
-              ? `${span(place.mmhg)} mmHg (${span(place.kpa)} kPa)`
+              ? h(
+                  "span",
+                  {},
+                  h("span", { class: "nowrap" }, `${span(place.mmhg)} mmHg`),
+                  " ",
+                  h("span", { class: "muted nowrap" }, `(${span(place.kpa)} kPa)`),
+                )
               : place.ease < 0
                 ? "not known"
                 : "loose",

@@ -15,7 +15,15 @@ import { h } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { table, tableRow } from "../../widgets/table.js";
-import { LengthField, choice, labelled, numberField, sameWords, selectField } from "../../widgets/fields.js";
+import {
+  LengthField,
+  choice,
+  labelled,
+  numberFault,
+  numberField,
+  sameWords,
+  selectField,
+} from "../../widgets/fields.js";
 import { drawGarment } from "./preview.js";
 import { facts } from "./facts.js";
 import { DIGITS, FINGER, LIMB, TEMPLATES } from "./templates.js";
@@ -41,7 +49,7 @@ export function create(studio, { keeper }) {
   const changed = () => {
     belonging.check();
     make.disabled = true; // until the new plan is there, the old one must not be made
-    const fault = lengths.map((field) => field.fault).find(Boolean);
+    const fault = lengths.map((field) => field.fault).find(Boolean) ?? shownNumbers().map(numberFault).find(Boolean);
     if (fault) {
       latest.cancel();
       refuse({ detail: fault });
@@ -57,6 +65,10 @@ export function create(studio, { keeper }) {
     planned();
   };
 
+  /** Fields for numbers that can be seen; lengths know their bounds in every unit. */
+  const shownNumbers = () =>
+    [...element.querySelectorAll("input")].filter(({ type, offsetParent }) => type === "number" && offsetParent);
+
   // --- what is asked ----------------------------------------------------------------------------
   const measures = h("div", { class: "stack gap-6" });
   const fabrics = h("div", { class: "stack gap-6", id: "planner-fabrics" });
@@ -69,6 +81,7 @@ export function create(studio, { keeper }) {
   const about = h("p", { class: "muted" });
   const ease = numberField({
     id: "planner-ease",
+    required: true,
     min: "-60",
     max: "100",
     step: "1",
@@ -79,6 +92,7 @@ export function create(studio, { keeper }) {
   });
   const target = numberField({
     id: "planner-target",
+    required: true,
     min: "1",
     max: "300",
     step: "1",
@@ -91,7 +105,7 @@ export function create(studio, { keeper }) {
     max: "300",
     step: "1",
     placeholder: "same",
-    "aria-label": "Pressure at the upper end in mmHg",
+    "aria-label": "Pressure at the upper end, mmHg",
     oninput: changed,
   });
   let byPressure = true;
@@ -105,9 +119,20 @@ export function create(studio, { keeper }) {
     showFit();
     changed();
   });
-  const yarn = h("select", { class: "text-field grows shrinks-x rounded", id: "planner-material", onchange: changed });
+  /** The yarn that was chosen, for every template; else each has its own. */
+  let chosenYarn = "";
+  const yarn = h("select", {
+    class: "text-field full-width rounded",
+    id: "planner-material",
+    "aria-label": "Yarn",
+    onchange: () => {
+      chosenYarn = yarn.value;
+      changed();
+    },
+  });
   const tex = numberField({
     min: "1",
+    max: "99999",
     step: "any",
     placeholder: "–",
     "aria-label": "Yarn in tex",
@@ -132,8 +157,9 @@ export function create(studio, { keeper }) {
     },
   });
   /** @param {string} label @param {string} value */
-  const count = (label, value) => numberField({ min: "1", step: "any", value, "aria-label": label, oninput: changed });
-  const [stitches, rows] = [count("Stitches", "22"), count("Rows", "30")];
+  const count = (label, value) =>
+    numberField({ required: true, min: "1", max: "200", step: "any", value, "aria-label": label, oninput: changed });
+  const [stitches, rows] = [count("Stitches of the swatch", "22"), count("Rows of the swatch", "30")];
   /** @param {string} label @param {readonly string[]} options */
   const select = (label, options) =>
     selectField(
@@ -142,7 +168,7 @@ export function create(studio, { keeper }) {
     );
   const [per, of] = [select("Counted over", ["10 cm", "4 in", "5 cm"]), select("Fabric of the swatch", FABRICS)];
   const counted = ["sts ×", rows, "rows per", per, "of", of];
-  const gaugeRow = h("div", { class: "line wrap gap-6", hidden: true }, stitches, ...counted);
+  const gaugeRow = h("div", { class: "planner-gauge line wrap gap-6", hidden: true }, stitches, ...counted);
   const inSizes = h("input", {
     type: "checkbox",
     id: "planner-sizes-shown",
@@ -153,7 +179,7 @@ export function create(studio, { keeper }) {
   });
   /** @param {string} label @param {string} value */
   const step = (label, value) =>
-    numberField({ min: "0", max: "20", step: "0.5", value, "aria-label": label, oninput: changed });
+    numberField({ required: true, min: "0", max: "20", step: "0.5", value, "aria-label": label, oninput: changed });
   const [wider, longer] = [step("Wider by, in percent", "5"), step("Longer by, in percent", "3")];
   const stepsRow = h(
     "div",
@@ -221,7 +247,7 @@ export function create(studio, { keeper }) {
         gradedRow,
         fabrics,
         h("h3", {}, "Yarn and gauge"),
-        labelled("Yarn", yarn),
+        yarn,
         labelled("Yarn, tex (g/km)", tex, "for its mass"),
         labelled("Yarn in a stitch of a swatch, mm", loop, "unravel ten, for a surer amount"),
         h("label", { class: "planner-check line gap-8" }, own, "My own gauge"),
@@ -232,13 +258,12 @@ export function create(studio, { keeper }) {
       ),
       h(
         "section",
-        { class: "planner-result column shrinks-x gap-12", "aria-label": "The garment" },
+        { class: "planner-result column shrinks-x gap-12", "aria-label": "The garment", tabIndex: 0 },
         h("div", { class: "planner-picture centred rounded sunken" }, canvas),
-        status,
         result,
       ),
     ),
-    h("div", { class: "dialog-buttons" }, make),
+    h("div", { class: "dialog-buttons" }, status, make),
   );
   /** A glove's ease is that of its fingers; the pressure is shown for its wrist. */
   function showFit() {
@@ -253,8 +278,7 @@ export function create(studio, { keeper }) {
     showFit();
     about.textContent = template.note;
     ease.value = chosenFits.get(easeOf()) ?? String(Math.round(template.ease * 100));
-    const chosen = yarn.value;
-    showMaterials(template.id === "glove" || !chosen ? template.material : chosen);
+    showMaterials(chosenYarn || template.material);
     lengths = [];
     /** @param {string} label @param {number} mm @param {import("./templates.js").Bounds} bounds @param {string} [key] */
     const length = (label, mm, bounds, key = `${template.id} ${label}`) => {
@@ -412,7 +436,7 @@ export function create(studio, { keeper }) {
       ...measured(),
       ...ofParts(),
       ...pressures(),
-      ease: ease.valueAsNumber / 100,
+      ease: Number.isFinite(ease.valueAsNumber) ? ease.valueAsNumber / 100 : template.ease,
     },
     material: yarn.value,
     gauge: own.checked
@@ -458,7 +482,7 @@ export function create(studio, { keeper }) {
   showTemplate();
   return () => {
     element.showModal();
-    showMaterials(yarn.value || template.material);
+    showMaterials(chosenYarn || template.material);
     changed();
   };
 }

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { asItStands, openQuestions, changed, inWords, isSaid, unitsOf, withColumn } from "../../services/tables.js";
+import { asItStands, hindrances, changed, inWords, isSaid, unitsOf, withColumn } from "../../services/tables.js";
 
 /** @import {TableResult} from "../../types.js" */
 
@@ -43,8 +43,9 @@ test("a template says in words how a table is read, and an answer is known again
 
 test("what is missing or open is asked", () => {
   const doubt = { field: "a.csv", problem: "A width of 7 looks like cm.", remedy: "", readings: [], is_open: true };
-  const open = openQuestions({ ...TABLE, doubts: [doubt, { ...doubt, is_open: false }] });
-  assert.deepEqual(open, ["strain or extension", "width", "A width of 7 looks like cm."]);
+  const problem = "a.csv has no column strain_along or extension_mm beside one force_n.";
+  const open = hindrances({ ...TABLE, problem, doubts: [doubt, { ...doubt, is_open: false }] });
+  assert.deepEqual(open, ["Still needed: a column of strain or extension, the width.", "A width of 7 looks like cm."]);
   assert.deepEqual(unitsOf("strain_across"), ["-", "%", "ratio"]);
   assert.deepEqual(unitsOf("run"), []);
 });

@@ -198,12 +198,12 @@ def _size_shown(colours: Array, *, is_own: bool, is_drawn: bool) -> tuple[int, i
             columns, rows = (round(side / min(wide, high)) for side in (width, height))
         if min(wide, high) >= MIN_CELL_PIXELS:
             note = (
-                f"A grid of {columns} x {rows} cells is seen, each a stitch; give columns to read "
-                "it otherwise."
+                f"A grid of {columns} x {rows} cells is seen, each a stitch; another number of "
+                "stitches across reads it otherwise."
             )
             return columns, rows, [note]
     if is_small and (not is_drawn or max(height, width) <= MAX_UNTOLD):
-        note = f"Each of {width} x {height} pixels is a stitch; give columns if it is a drawing."
+        note = f"Each of {width} x {height} pixels is a stitch. A drawing needs fewer across."
         return width, height, [note] * (max(height, width) > MAX_UNTOLD)
     why = "a photo has no pixel for a stitch" if is_small else "it has more pixels than a chart has"
     raise InputError(

@@ -227,8 +227,14 @@ def _stitch_lines(style: ChartStyle, y: float) -> Iterator[Shape]:
 
 
 def multiple_words(repeat: StitchChart | SymbolChart, edge_columns: int, edge_rows: int) -> str:
-    """How many stitches and rows a repeat takes, with those that are left at the edges."""
+    """How many stitches and rows a repeat takes, with those that are left at the edges.
+
+    >>> multiple_words(StitchChart.parse("KKPP"), 2, 0)
+    'multiple of 4 + 2 sts'
+    """
     stitches = f"multiple of {repeat.columns}" + (f" + {edge_columns}" if edge_columns else "")
+    if repeat.rows == 1:
+        return f"{stitches} sts"
     rows = f"multiple of {repeat.rows}" + (f" + {edge_rows}" if edge_rows else "")
     return f"{stitches} sts, {rows} rows"
 

@@ -189,7 +189,7 @@ def _numbers(
         along_rows, along_columns = (_value(*value(prediction.along(d))) for d in Direction)
         rows.append((label, along_rows, along_columns))
     for index, cells in enumerate(rows):
-        yield from _row((MARGIN_MM, 62.0, 128.0), cells, 36.0 + 5.2 * index, 3.2)
+        yield from _row((MARGIN_MM, 70.0, 132.0), cells, 36.0 + 5.2 * index, 3.2)
     yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
     yield Label(
         MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {SOURCES[prediction.provenance]}.", 3.0
@@ -244,8 +244,8 @@ def _colour(level: int) -> str:
 
 
 def _plot(prediction: Prediction) -> Iterator[Shape]:
-    """Stress over strain, both directions."""
-    yield Label(MARGIN_MM, 158.0, "stress (N/mm) over strain, pulled one way, free the other", 3.0)
+    """Stress over stretch, both directions, named beside the title, where no curve runs."""
+    yield Label(MARGIN_MM, 158.0, "stress (N/mm) over stretch, pulled one way, free the other", 3.0)
     left, top, width, height = MARGIN_MM + 10.0, 162.0, 150.0, 52.0
     stress = np.array(DEFAULT_STRESS_N_PER_MM)
     strains = {d: prediction.along(d).strain(stress) for d in Direction}
@@ -253,21 +253,16 @@ def _plot(prediction: Prediction) -> Iterator[Shape]:
     yield Rectangle(left, top, width, height, stroke="#b5b0a8")
     for share in (0.0, 0.5, 1.0):
         x, y = left + width * share, top + height * (1 - share)
-        yield Label(x, top + height + 4.0, f"{widest * share:.2f}", 2.8, "middle")
+        yield Label(x, top + height + 4.0, f"{100 * widest * share:.0f} %", 2.8, "middle")
         yield Label(left - 1.5, y + 1.0, f"{tallest * share:.2f}", 2.8, "end")
     for index, (direction, strain) in enumerate(strains.items()):
         across, up = left + width * strain / widest, top + height * (1 - stress / tallest)
         points = list(zip(across.tolist(), up.tolist(), strict=True))
         ink = _DIRECTION_INK[direction]
         yield Lines(tuple((*a, *b) for a, b in pairwise(points)), ink, 0.5)
-        line = top + 5.0 + 5.0 * index
-        yield Lines(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
-        yield Label(
-            left + 13.0,
-            line,
-            f"pulled along the {LINES[direction]}, {SOURCES[prediction.provenance]}",
-            2.8,
-        )
+        start = 106.0 + 44.0 * index
+        yield Lines(((start, 157.0, start + 7.0, 157.0),), ink, 0.5)
+        yield Label(start + 9.0, 158.0, f"along the {LINES[direction]}", 3.0)
 
 
 def _with_assumptions(shapes: Sequence[Shape], said: Sequence[str], top: float) -> list[Page]:

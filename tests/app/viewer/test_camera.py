@@ -10,12 +10,13 @@ from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE
 
 @pytest.mark.parametrize("side", CameraSide)
 @pytest.mark.parametrize("below_mm", [0.0, 15.0])
+@pytest.mark.parametrize("aspect", [ASPECT, 0.46])
 @pytest.mark.parametrize("extent_mm", [(40.0, 50.0), (50.0, 20.0), (20.0, 60.0), (300.0, 300.0)])
 def test_all_corners_are_in_the_picture(
-    side: CameraSide, extent_mm: tuple[float, float], below_mm: float
+    side: CameraSide, extent_mm: tuple[float, float], below_mm: float, aspect: float
 ) -> None:
     """And what lies below it, unless the fabric is seen by its edge."""
-    position, aim, up = stand(side, np.array(extent_mm), below_mm)
+    position, aim, up = stand(side, np.array(extent_mm), below_mm, aspect)
     ahead = (aim - position) / np.linalg.norm(aim - position)
     right = np.cross(ahead, up)
     right /= np.linalg.norm(right)
@@ -25,7 +26,7 @@ def test_all_corners_are_in_the_picture(
         places = np.vstack([places, [0.0, -extent_mm[1] / 2 - below_mm, 0.0]])
     seen = places - position
     half = seen @ ahead * np.tan(FIELD_OF_VIEW / 2)
-    across = seen @ right / (half * ASPECT)
+    across = seen @ right / (half * aspect)
     upward = seen @ np.cross(right, ahead) / half
     assert np.abs(across).max() < 0.95
     assert np.abs(upward[:4]).max() < 0.95

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.viewer import scene as scene_module
-from app.viewer.camera import CameraSide
+from app.viewer.camera import ASPECT, CameraSide
 from app.viewer.cloth import FINEST, UNITS_PER_MM, ShownStitches
 from app.viewer.views import View, new_view
 from tests.app.drawing.test_design_view import SMALL, scene_of
@@ -21,8 +21,8 @@ from tests.app.drawing.test_design_view import SMALL, scene_of
 def view(monkeypatch: pytest.MonkeyPatch) -> Iterator[View]:
     """A view at which somebody looks."""
     view = new_view()
-    camera = SimpleNamespace(position=np.zeros(3))
-    client = SimpleNamespace(camera=camera, atomic=contextlib.nullcontext)
+    camera = SimpleNamespace(position=np.zeros(3), aspect=ASPECT)
+    client = SimpleNamespace(camera=camera, client_id=0, atomic=contextlib.nullcontext)
     monkeypatch.setattr(view.server, "get_clients", lambda: {0: client})
     yield view
     view.stop()
@@ -169,6 +169,36 @@ def test_a_cloth_of_another_size_is_framed_again(view: View) -> None:
     plain = place_for(*rows)
     assert np.array_equal(plain, place_for("K" * 11 + "P", *rows[1:]))
     assert not np.allclose(plain, place_for(*["KP" * 6] * 12), rtol=0.05)
+
+
+def test_a_narrow_view_is_seen_from_farther_and_a_turned_camera_stays(view: View) -> None:
+    """As on the whole screen of a phone, and back."""
+    (client,) = view.server.get_clients().values()
+    client.camera.position = np.array(view.server.initial_camera.position)
+    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 6)})
+    wide = np.array(client.camera.position)
+    for aspect, farther in ((0.46, True), (0.45, True), (2.0, False)):
+        client.camera.aspect = aspect
+        view.writer.fit(client)
+        distance = np.linalg.norm(client.camera.position)
+        assert (distance > 1.5 * np.linalg.norm(wide)) == farther
+    np.testing.assert_allclose(client.camera.position, wide)
+    client.camera.position = close = np.array([0.01, 0.02, 0.05])
+    client.camera.aspect = 0.46
+    view.writer.fit(client)
+    np.testing.assert_array_equal(client.camera.position, close)
+
+
+def test_a_view_that_opens_narrow_is_placed_once_its_camera_stands(view: View) -> None:
+    """A client tells its shape before its camera stands where all do."""
+    (client,) = view.server.get_clients().values()
+    client.camera.aspect = 0.46
+    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 6)})
+    client.camera.position = np.full(3, 3.0)
+    view.writer.fit(client)
+    client.camera.position = start = np.array(view.server.initial_camera.position)
+    view.writer.fit(client)
+    assert np.linalg.norm(client.camera.position) > np.linalg.norm(start)
 
 
 def test_the_light_between_the_yarn_is_sent_with_its_corners(

@@ -136,9 +136,9 @@ def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> No
     for name, kind, content, message in (
         ("broken.png", "image/png", b"\x89PNG nonsense", "not a readable PNG"),
         ("empty.txt", "text/plain", b"", "is empty"),
-        ("ragged.txt", "text/plain", b"KP\nKPK", "line 2 has 3 stitches"),
+        ("ragged.txt", "text/plain", b"KP\nKPK", "Line 2 has 3 stitches"),
         ("program.bin", "", b"\x00\x01\x02", "is not a text file"),
-        ("half.json", "application/json", b'{"format": "knitcore-des', "not valid JSON"),
+        ("half.json", "application/json", b'{"format": "knitcore-des', "damaged or not complete"),
         ("other.json", "application/json", b'{"a": 1}', "not a design"),
         ("new.json", "", json.dumps(old | {"version": 9, "chart": "K"}).encode(), "version 9"),
         ("ragged.json", "", json.dumps(old | {"chart": "KP\nK"}).encode(), "rows of K and P"),

@@ -1,5 +1,7 @@
 """Every tool of the chart, on both sides of the cloth, and back to the start."""
 
+import re
+
 import pytest
 from playwright.sync_api import Page, expect
 
@@ -75,6 +77,17 @@ def test_the_back_is_mirrored_and_painting_it_paints_the_face(flat_studio: Page)
     assert purls(kept_chart(flat_studio)) == block((3, 3), (2, 4))
     flat_studio.reload()
     expect(flat_studio.locator("#choose-back")).to_have_attribute("aria-checked", "true")
+
+
+def test_the_shelf_has_the_symbols_of_the_chart(flat_studio: Page) -> None:
+    purl, knit = (flat_studio.locator(f"#ink-{ink} img") for ink in ("purl", "knit"))
+    drawn: set[tuple[str | None, str | None]] = set()
+    for look in ("both dots", "both dashes", "both japanese"):
+        flat_studio.select_option("#look", look)
+        expect(purl).to_have_attribute("src", re.compile("^data:"))
+        flat_studio.wait_for_timeout(300)
+        drawn.add((purl.get_attribute("src"), knit.get_attribute("src")))
+    assert len(drawn) == 3
 
 
 @pytest.mark.slow

@@ -36,11 +36,28 @@ def test_bad_text_is_explained_and_changes_nothing(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == painted
 
     flat_studio.fill("#import-text", "KPK\nPKP")
+    flat_studio.keyboard.press("Escape")
+    flat_studio.click("#action-import")
     flat_studio.click("#import-apply")
     expect(flat_studio.locator("#import-dialog")).to_be_hidden()
     assert kept_chart(flat_studio) == "KPK\nPKP"
     flat_studio.click("#action-undo")
     assert kept_chart(flat_studio) == painted
+
+
+def test_a_yarn_that_was_begun_outlasts_its_dialog(flat_studio: Page) -> None:
+    for form, field in (("#yarn-new", "#yarn-rib-rows"), ("#yarn-swatch", "#swatch-ball-grams")):
+        flat_studio.focus("#chart")
+        flat_studio.keyboard.press("Shift+Y")
+        flat_studio.click(form)
+        flat_studio.fill(field, "31")
+        flat_studio.mouse.click(2, 2)  # beside the dialog
+        expect(flat_studio.locator("#yarns-dialog")).to_be_hidden()
+        flat_studio.focus("#chart")
+        flat_studio.keyboard.press("Shift+Y")
+        flat_studio.click(form)
+        expect(flat_studio.locator(field)).to_have_value("31")
+        flat_studio.keyboard.press("Escape")
 
 
 def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
