@@ -10,7 +10,7 @@
 import { ApiError, api } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
-import { pieceOf } from "./scope.js";
+import { limbOf, pieceIn, pieceOf, scopeIn } from "./scope.js";
 import { figure, percent } from "../core/format.js";
 import { POSES } from "../state/seeing.js";
 import { REST } from "../state/studio.js";
@@ -44,14 +44,12 @@ export const hindrance = (studio, pose) => (pose in OPERATIONS ? studio.tooLarge
 export function startPoser(studio) {
   const latest = new Latest(DELAY_MS);
   const { pose, posed, limb, curling } = studio.seeing;
-  let limbNow = "";
   /** @returns {Posed["pose"]} */
   const poseToShow = () => (pose.value === "flat" && curling.value && studio.currentStrain() ? "pulled" : pose.value);
   const ask = () => {
     latest.cancel();
     const now = poseToShow();
     const shapes = SHAPES[now];
-    limbNow = JSON.stringify(studio.limb);
     const { rows, columns } = studio.document.grid;
     const old = posed.value;
     const fits = old?.pose === now && old.rows === rows && old.columns === columns;
@@ -93,10 +91,6 @@ export function startPoser(studio) {
     else if (pose.value === "hung") ask();
   });
   limb.listen(() => pose.value === "worn" && ask());
-  // A limb of the chart's size grows with it.
-  studio.prediction.listen(({ busy, scope }) => {
-    if (pose.value === "worn" && !busy && scope === "chart" && JSON.stringify(studio.limb) !== limbNow) ask();
-  });
   studio.step.listen((step) => {
     if (step !== REST) pose.value = "flat"; // it is pulled
     if (curling.value) ask();
@@ -134,7 +128,8 @@ async function* hung(studio, signal) {
       { ...request, time_limit_s },
       signal,
     );
-    const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
+    const change = `${percent(Math.abs(lengthening), 1)} ${lengthening < 0 ? "shorter" : "longer"}`;
+    const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${change}`;
     const words = `Hanging: ${figure(weight_g, 2)} g, ${length}`;
     yield { pose: "hung", id, rows, columns, converged, words, note: notes[0] };
   }
@@ -170,8 +165,10 @@ async function* worn(studio, signal) {
     };
     return;
   }
-  const request = { ...pieceOf(studio), ...studio.limb };
-  const { id, places, limit_mmhg, notes } = await api.run("limb", request, signal);
+  const whole = scopeIn(studio.document, null);
+  const piece = pieceIn(studio, whole);
+  const limb = limbOf(studio, whole, await api.run("predict", piece, signal));
+  const { id, places, limit_mmhg, notes } = await api.run("limb", { ...piece, ...limb }, signal);
   if (!id) return;
   const note = notes.find((words) => !isWarning(words)) ?? "";
   yield { pose: "worn", id, rows, columns, converged: true, note, ...pressed(places, limit_mmhg, notes, "body") };

@@ -4,6 +4,7 @@
  * @import {Grid} from "../grid/grid.js"
  * @import {ChartState} from "../design/state.js"
  * @import {Selection} from "../design/selection.js"
+ * @import {GirthAt} from "../state/seeing.js"
  * @import {Studio} from "../state/studio.js"
  * @import {Direction, GaugeInput, PredictResult} from "../types.js"
  *
@@ -20,6 +21,11 @@
 import { largestRectangle } from "../grid/inscribed.js";
 import { selectionOf } from "../design/selection.js";
 import { outlineText } from "../design/snapshot.js";
+
+/** Girths of a limb that a tube sits on firmly, over its size at rest: where it begins, and where it ends. */
+const SNUG = [1.12, 1.25];
+/** Intervals along a shaped piece between the girths that fit it. */
+const SHAPED = 4;
 
 /** @param {Studio} studio @returns {Scope} */
 export function scopeOf(studio) {
@@ -64,10 +70,43 @@ export function clothIn({ gauges, materialId }, { grid }) {
   return { ...cloth, gauge: gauges.of(cloth) };
 }
 
+/**
+ * All stitches of a scope, as one piece that the service takes.
+ *
+ * @param {Pick<Studio, "gauges" | "materialId">} studio
+ * @param {Scope} scope
+ */
+export function pieceIn(studio, scope) {
+  const { grid, mask } = scope.counted;
+  return { ...clothIn(studio, scope), chart: grid.text, outline: mask && outlineText(mask, grid.columns) };
+}
+
 /** The whole piece as the service takes it. @param {Studio} studio */
-export function pieceOf(studio) {
-  const { document: chart } = studio;
-  return { ...clothIn(studio, scopeIn(chart, null)), chart: chart.grid.text, outline: chart.outlineText };
+export const pieceOf = (studio) => pieceIn(studio, scopeIn(studio.document, null));
+
+/**
+ * The limb that a piece is worn on: as it was given, or one on which a tube of the piece sits firmly.
+ *
+ * @param {Pick<Studio, "seeing">} studio
+ * @param {Scope} scope of the piece
+ * @param {PredictResult} predicted of its cloth
+ * @returns {{direction: Direction, girths: GirthAt[]}}
+ */
+export function limbOf({ seeing }, { counted: { grid, mask } }, predicted) {
+  const { direction, girths } = seeing.limb.value;
+  if (girths) return { direction, girths };
+  const byRow = direction === "course";
+  const [course, wale] = [predicted.relaxed_course_mm, predicted.relaxed_wale_mm];
+  const [lines, wide, high] = byRow ? [grid.rows, course, wale] : [grid.columns, wale, course];
+  const around = inLines(grid, mask)[direction];
+  const intervals = mask ? SHAPED : 1;
+  const snug = Array.from({ length: intervals + 1 }, (_, i) => {
+    const along = i / intervals;
+    const rest = wide * around[Math.min(lines - 1, Math.floor(along * lines))];
+    const girth = (SNUG[0] + along * (SNUG[1] - SNUG[0])) * rest;
+    return { at_mm: Math.max(i, Math.round(along * lines * high)), girth_mm: Math.round(girth) };
+  });
+  return { direction, girths: snug };
 }
 
 /**
@@ -104,7 +143,8 @@ export function sizeAtRest({ kind, counted }, predicted) {
       course: { value: width_mm, interval: width_interval_mm },
       wale: { value: height_mm, interval: height_interval_mm },
     };
-  const { columns, rows } = mostInLine(counted);
+  const { course, wale } = inLines(counted.grid, counted.mask);
+  const [columns, rows] = [Math.max(...course), Math.max(...wale)];
   const { relaxed_course_interval_mm: wide, relaxed_wale_interval_mm: high } = predicted;
   return {
     course: { value: columns * predicted.relaxed_course_mm, interval: [columns * wide[0], columns * wide[1]] },
@@ -112,14 +152,18 @@ export function sizeAtRest({ kind, counted }, predicted) {
   };
 }
 
-/** Stitches of the widest row and of the highest column. @param {Scope["counted"]} counted */
-function mostInLine({ grid: { rows, columns }, mask }) {
-  if (!mask) return { rows, columns };
-  const wide = new Uint32Array(rows);
-  const high = new Uint32Array(columns);
-  mask.forEach((inside, i) => {
-    wide[Math.floor(i / columns)] += inside;
-    high[i % columns] += inside;
+/**
+ * Stitches in each row, along which the courses run, and in each column, along which the wales do.
+ *
+ * @param {Grid} grid
+ * @param {Uint8Array | null} mask where there are stitches; everywhere if left out
+ */
+function inLines({ rows, columns }, mask) {
+  const course = new Uint32Array(rows).fill(mask ? 0 : columns);
+  const wale = new Uint32Array(columns).fill(mask ? 0 : rows);
+  mask?.forEach((inside, i) => {
+    course[Math.floor(i / columns)] += inside;
+    wale[i % columns] += inside;
   });
-  return { rows: Math.max(...high), columns: Math.max(...wide) };
+  return { course, wale };
 }

@@ -2,7 +2,6 @@
  * The state that the panels share: the chart, how it is shown and painted, what the service says of
  * it. Panels watch the signals and change them; none knows another.
  *
- * @import {GirthAt} from "./seeing.js"
  * @import {ChartDocument} from "../design/document.js"
  * @import {Selection} from "../design/selection.js"
  * @import {History} from "../design/history.js"
@@ -30,11 +29,6 @@ import { Gauges } from "./gauges.js";
 import { TOOLS, pencil } from "../tools/tools.js";
 
 const SETTINGS = { overlay: "fabrics", rectangles: false, tool: "pencil", size: 1, weight: 0.5 };
-
-/** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
-const SNUG = [1.12, 1.25];
-/** Intervals along a shaped chart between the girths that fit it. */
-const SHAPED = 4;
 
 /** @param {Pick<MaterialSummary, "fabrics">} yarn */
 export const isComplete = ({ fabrics }) => Object.keys(fabrics).length === 4;
@@ -156,31 +150,6 @@ export class Studio {
     const rest = ({ outline, regions, repeats, shelf }) => JSON.stringify([outline, regions, repeats, shelf]);
     if (rest(content) === rest(design)) this.document.replace(Grid.fromText(design.chart), label);
     else this.document.load(design, label);
-  }
-
-  /** The limb that the chart is worn on: as given, or one on which a tube of it sits firmly. */
-  get limb() {
-    const { direction, girths } = this.seeing.limb.value;
-    return { direction, girths: girths ?? this.snugLimb };
-  }
-
-  /** A limb of the chart's size that grows a little along it. @returns {GirthAt[]} */
-  get snugLimb() {
-    const { grid, outline, shaped } = this.document;
-    const { rows, columns } = grid;
-    const size = this.prediction.value.value;
-    const [course, wale] = [size?.relaxed_course_mm ?? 1, size?.relaxed_wale_mm ?? 1];
-    const byRow = this.seeing.limb.value.direction === "course";
-    const [lines, wide, high] = byRow ? [rows, course, wale] : [columns, wale, course];
-    const counts = new Uint32Array(lines);
-    outline.forEach((inside, i) => (counts[byRow ? Math.floor(i / columns) : i % columns] += inside));
-    const intervals = shaped ? SHAPED : 1;
-    return Array.from({ length: intervals + 1 }, (_, i) => {
-      const along = i / intervals;
-      const around = wide * counts[Math.min(lines - 1, Math.floor(along * lines))];
-      const girth = (SNUG[0] + along * (SNUG[1] - SNUG[0])) * around;
-      return { at_mm: Math.max(i, Math.round(along * lines * high)), girth_mm: Math.round(girth) };
-    });
   }
 
   /** The yarns whose four fabrics were all measured or estimated: they can be mixed in a chart. */

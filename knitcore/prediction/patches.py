@@ -22,6 +22,7 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from knitcore.base.arrays import Array, Indices
@@ -104,33 +105,25 @@ class Patches:
             notes=together(lambda patch: patch.notes),
         )
 
-    def lines(self, direction: Direction) -> tuple[Prediction, ...]:
+    def lines(self, direction: Direction, count: int) -> tuple[Prediction, ...]:
         """Predict each row of the chart for a course-wise pull, or each column for a wale-wise one.
 
-        Between the middles of the patches' windows they change gradually, as if a line were knitted
-        partly as the one window, partly as the other.
+        They change gradually, as if a line were knitted partly as the one patch, partly as the
+        next. A chart of ``count`` rows or columns goes on beyond its repeat.
         """
         by_row = direction is Direction.COURSE
         cuts, across = (self.rows, self.columns) if by_row else (self.columns, self.rows)
         grid = self.predictions if by_row else tuple(zip(*self.predictions, strict=True))
-        count = int(cuts[-1])
-        places = np.arange(count) + 0.5
-        middles = _windows(cuts) @ places
 
         @cache
-        def line(first: int, share: float) -> Prediction:
-            near, parts = grid[first : first + 2], np.array([0.0, 1.0 - share, 1.0])
-            if share in (0.0, 1.0):
-                near, parts = (near[int(share)],), np.array([0.0, 1.0])
+        def line(shares: tuple[float, ...]) -> Prediction:
+            near = tuple(each for each, share in zip(grid, shares, strict=True) if share)
+            parts = np.cumsum([0.0, *filter(None, shares)])
             if by_row:
                 return Patches(parts, across, near).together()
             return Patches(across, parts, tuple(zip(*near, strict=True))).together()
 
-        if len(middles) == 1:
-            return (line(0, 0.0),) * count
-        first = np.clip(np.searchsorted(middles, places) - 1, 0, len(middles) - 2)
-        share = np.clip((places - middles[first]) / np.diff(middles)[first], 0.0, 1.0)
-        return tuple(line(*at) for at in zip(first.tolist(), share.tolist(), strict=True))
+        return tuple(line(tuple(shares)) for shares in shares_of_patches(cuts, count).tolist())
 
     def _along(self, flat: list[Prediction], share: Array, direction: Direction) -> Along:
         parts = [patch.along(direction) for patch in flat]
@@ -287,6 +280,29 @@ def _windows(cuts: Indices) -> Array:
         start = min(max((low + high - size) // 2, 0), end - size)
         own[start : start + size] = 1 / size
     return weights
+
+
+def shares_of_patches(cuts: Indices, count: int) -> Array:
+    """Shares (count, patches) of the patches in the cloth around each stitch along a side.
+
+    They are means over as many stitches as the widest patch has, so they change gradually, and each
+    patch has its own size of the whole. Beyond its ends a chart goes on as its mirror image, or as
+    its repeat if it has more stitches than that.
+
+    Examples
+    --------
+    >>> shares_of_patches(np.array([0, 12, 24]), 24)[[0, 5, 11, 12, 23], 0].round(2).tolist()
+    [1.0, 1.0, 0.54, 0.46, 0.0]
+    """
+    sizes = np.diff(cuts)
+    widest = int(sizes.max())
+    around = np.ones(widest // 2 * 2 + 1)
+    around[[0, -1]] -= (len(around) - widest) / 2  # an even width ends within stitches
+    own = np.repeat(np.eye(len(sizes)), sizes, axis=0)
+    period = len(own)
+    own = np.pad(own, ((widest, widest), (0, 0)), "wrap" if count > period else "symmetric")
+    shares = scipy.ndimage.convolve1d(own, around / widest, axis=0)[widest : widest + period]
+    return np.asarray(shares[np.arange(count) % period])
 
 
 def _shares(values: Array) -> Array:

@@ -10,13 +10,14 @@ and laws are fitted to that. Phases in series then add up to the prediction, and
 stretch most in the flat composite still do. In fine textures c is a half: neighbours restrain each
 other (and neighbouring cells that differed as much as the pure fabrics would be crushed). With the
 share of wide areas of one phase it rises to 1. Like the predictions, these parts pass gradually
-from those of the whole chart to those of its patches.
+from those of the whole chart to those of its patches. From patch to patch the laws change
+gradually (:func:`knitcore.prediction.patches.shares_of_patches`): cloth of one texture has no step.
 Stitch sizes are those of their surroundings (:mod:`knitcore.prediction.neighbourhood`), scaled
 to the prediction's relaxed size. Poisson's ratios are the prediction's, or less where one
 energy for both directions requires it. A piece of one pure fabric keeps its own law.
 
-Finite elements larger than a stitch take even laws instead: one for all quarters of a patch, with
-the patch's own strains.
+Finite elements larger than a stitch take even laws instead: one for all quarters of a place, with
+the strains of its patches.
 
 The flat composite is taken as lines of cells along the pull: in a line the phases are in series at
 one force, and all lines are strained alike.
@@ -40,7 +41,7 @@ from knitcore.materials import FabricRecord, Material
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.mixture import law_strains
 from knitcore.prediction.neighbourhood import sizes_and_folds
-from knitcore.prediction.patches import Patches
+from knitcore.prediction.patches import Patches, shares_of_patches
 from knitcore.prediction.predict import patches_of
 from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.size import RelaxedSize
@@ -64,9 +65,10 @@ class QuarterLaws:
 
     Attributes
     ----------
-    laws : four for each patch, in the order of the phase codes; a phase that is not in the patch
+    laws : four for each patch, in the order of the phase codes; a phase that is not in the chart
         has the law of another one.
-    patch : (rows, columns) number of each stitch's patch.
+    place : (rows, columns) number of each stitch's place among the patches.
+    mixing : (4 * places, laws) shares of the laws in those of each place, four for each as above.
     scale : (rows, columns, 2) width and height of the stitches over those of their phases.
     log_sd : gives the standard deviation of the logarithm of stress course-wise and wale-wise,
         (2, stresses) at :data:`SPREAD_AT`: the model's own error, not that of the pure fabrics'
@@ -74,7 +76,8 @@ class QuarterLaws:
     """
 
     laws: tuple[ConstitutiveLaw, ...]
-    patch: Indices
+    place: Indices
+    mixing: scipy.sparse.csr_array
     scale: Array
     log_sd: Callable[[], Array]
 
@@ -104,37 +107,42 @@ def quarter_laws(
     scale = _scale(chart, phases, patches, material)
     if pure:
         return replace(flat_laws(chart, material), scale=scale)
-    whole = _parts(phases, material)
+    records = _records(phases, material)
+    whole = _parts(phases, records)
     laws: list[ConstitutiveLaw] = []
-    # of the repeat, if it has several patches
-    number = np.zeros((patches.rows[-1], patches.columns[-1]), dtype=np.intp)
-    for here, cells, prediction in _each(patches, phases):
-        number[here] = len(laws) // len(PHASES)
-        parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, material)
-        laws += _fitted_laws(cells, prediction, material, None if even else parts)
-    everywhere = np.ix_(
-        *(np.arange(n) % period for n, period in zip(chart.purl.shape, number.shape, strict=True))
+    for cells, prediction in _each(patches, phases):
+        parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, records)
+        laws += _fitted_laws(cells, prediction, records, None if even else parts)
+    own_error = partial(_stress_log_sd, phases, patches, records)
+    return QuarterLaws(tuple(laws), *_mixing(patches, chart), scale, own_error)
+
+
+def _mixing(patches: Patches, chart: StitchChart) -> tuple[Indices, scipy.sparse.csr_array]:
+    """Place of each stitch, and the shares of the patches' laws there."""
+    (along_rows, row), (along_columns, column) = (
+        np.unique(shares_of_patches(cuts, count), axis=0, return_inverse=True)
+        for cuts, count in zip((patches.rows, patches.columns), chart.purl.shape, strict=True)
     )
-    own_error = partial(_stress_log_sd, phases, patches, material)
-    return QuarterLaws(tuple(laws), number[everywhere], scale, own_error)
+    shares = scipy.sparse.kron(along_rows, along_columns)
+    mixing = scipy.sparse.kron(shares, np.eye(len(PHASES)))
+    place = row[:, None] * len(along_columns) + column
+    return place.astype(np.intp), scipy.sparse.csr_array(mixing)
 
 
-def _each(
-    patches: Patches, phases: Codes
-) -> Iterator[tuple[tuple[slice, slice], Codes, Prediction]]:
-    """Stitches, quarter cells and prediction of each patch."""
+def _each(patches: Patches, phases: Codes) -> Iterator[tuple[Codes, Prediction]]:
+    """Quarter cells and prediction of each patch."""
     for (below, above), line in zip(pairwise(patches.rows), patches.predictions, strict=True):
         for (left, right), prediction in zip(pairwise(patches.columns), line, strict=True):
             cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
-            yield (slice(below, above), slice(left, right)), cells, prediction
+            yield cells, prediction
 
 
-def _stress_log_sd(phases: Codes, patches: Patches, material: Material) -> Array:
+def _stress_log_sd(phases: Codes, patches: Patches, records: list[FabricRecord]) -> Array:
     """The mean of the patches."""
     spread, all_cells = np.zeros((2, len(SPREAD_AT))), 4 * patches.rows[-1] * patches.columns[-1]
-    for _, cells, prediction in _each(patches, phases):
+    for cells, prediction in _each(patches, phases):
         for direction in Direction:
-            own = _own_log_sd(cells, prediction, material, direction)
+            own = _own_log_sd(cells, prediction, records, direction)
             spread[direction.axis] += own * (cells.size / all_cells)
     return spread
 
@@ -164,8 +172,9 @@ def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
     """
     laws = tuple(record.law for record in _records(quarter_phases(chart), material))
     shape = chart.purl.shape
+    own = scipy.sparse.eye_array(len(laws), format="csr")
     none = partial(np.zeros, (2, len(SPREAD_AT)))
-    return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
+    return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), own, np.ones((*shape, 2)), none)
 
 
 def _records(cells: Codes, material: Material) -> list[FabricRecord]:
@@ -179,19 +188,18 @@ def _shares(cells: Codes) -> Array:
 
 
 def _own_log_sd(
-    cells: Codes, prediction: Prediction, material: Material, direction: Direction
+    cells: Codes, prediction: Prediction, records: list[FabricRecord], direction: Direction
 ) -> Array:
     """Part of the predicted stress interval that does not come from the laws' own uncertainty."""
     along = prediction.along(direction)
     low, high = along.stress_interval(along.strain(SPREAD_AT))
     whole = np.log(high / low) / (2 * Z_SCORE)
-    records = _records(cells, material)
     laws = [r.uncertainty.log_stress(direction, SPREAD_AT) for r in records]
     return np.sqrt(np.maximum(whole**2 - _shares(cells) ** 2 @ np.square(laws), 0.0))
 
 
 def _fitted_laws(
-    cells: Codes, prediction: Prediction, material: Material, parts: Array | None
+    cells: Codes, prediction: Prediction, records: list[FabricRecord], parts: Array | None
 ) -> list[ConstitutiveLaw]:
     """Laws of the phases that give a patch its predicted response.
 
@@ -201,7 +209,6 @@ def _fitted_laws(
     unfolds first has little strain in its yarn. So a patch that is all but pure has nearly the
     laws of its pure fabric.
     """
-    records = _records(cells, material)
     shear = np.array([r.law.shear_modulus for r in records])
     growth = np.array([r.law.shear_stiffening for r in records])
     constants = np.zeros((2, len(records), 3))  # Young's modulus, alpha, beta
@@ -257,12 +264,11 @@ def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, fl
     return _fitted(law_strains(law, direction, STRESSES))
 
 
-def _parts(cells: Codes, material: Material) -> Array:
+def _parts(cells: Codes, records: list[FabricRecord]) -> Array:
     """Ratios of the phases' strains to the cloth's at :data:`STRESSES`, (2, phases, stresses).
 
     They are half as far from 1 as in the flat composite, and as far in wide areas of one phase.
     """
-    records = _records(cells, material)
     wide = scipy.ndimage.maximum_filter(cells, _WIDE) == scipy.ndimage.minimum_filter(cells, _WIDE)
     contrast = (1 + wide.mean()) / 2
     ratios = []

@@ -13,7 +13,7 @@ import { Latest } from "../../services/latest.js";
 import { isWarning } from "../../services/poser.js";
 import { h, remark } from "../../elements/dom.js";
 import { pressurePlot } from "../../plots/pressure.js";
-import { clothIn, pieceOf, scopeOf } from "../../services/scope.js";
+import { clothIn, limbOf, pieceIn, scopeOf } from "../../services/scope.js";
 import { iconButton } from "../../widgets/buttons.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { labelled, numberField, selectField } from "../../widgets/fields.js";
@@ -29,14 +29,15 @@ export function limb(host, studio) {
   const chosen = studio.seeing.limb;
   const latest = new Latest(DELAY_MS);
   const ask = () => {
-    if (host.hidden || !studio.prediction.value.value) return;
-    const { girths, direction } = studio.limb;
-    if (!chosen.value.girths) showGirths(girths); // those that fit the chart
+    const { value } = studio.prediction.value;
+    if (host.hidden || !value) return;
     const scope = scopeOf(studio);
-    // A part is a repeat of the tube, the whole chart is the tube.
+    const { girths, direction } = limbOf(studio, scope, value);
+    if (!chosen.value.girths) showGirths(girths); // those that fit the piece
+    // Of a tube of another size the piece is a repeat.
     const rest_mm = tube.valueAsNumber > 0 ? tube.valueAsNumber : null;
     const sized = rest_mm ? girths.map((girth) => ({ ...girth, rest_mm })) : girths;
-    const cloth = rest_mm || scope.kind !== "chart" ? clothIn(studio, scope) : pieceOf(studio);
+    const cloth = rest_mm ? clothIn(studio, scope) : pieceIn(studio, scope);
     belonging.check(); // the tube may be another
     const { basis } = belonging;
     latest.run(
@@ -108,7 +109,11 @@ export function limb(host, studio) {
   showGirths(chosen.value.girths ?? []);
 
   const answer = h("div", { role: "status", id: "limb-answer" });
-  const belonging = new Belonging(studio, () => ({ ...clothOf(studio), limb: [studio.limb, tube.value] }));
+  const belonging = new Belonging(studio, () => {
+    const { value } = studio.prediction.value;
+    const worn = value && limbOf(studio, scopeOf(studio), value);
+    return { ...clothOf(studio), limb: [worn, tube.value] };
+  });
   belonging.marks(answer, "limb");
   /** @param {LimbResult} fit */
   const show = (fit) => {

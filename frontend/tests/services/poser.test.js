@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { api } from "../../api.js";
 import { wordsOf } from "../../state/seeing.js";
 import { Signal } from "../../core/signal.js";
+import { Grid } from "../../grid/grid.js";
 import { startPoser } from "../../services/poser.js";
 
 /** What the poser reads of the page. @returns {any} */
@@ -13,7 +14,7 @@ function studio() {
   const seeing = {
     pose: signal("flat"),
     posed: signal(null),
-    limb: signal(null),
+    limb: signal({ direction: "course", girths: null }),
     curling: signal(false),
     glove: signal(null),
   };
@@ -22,10 +23,8 @@ function studio() {
     weight: signal(0.5),
     step: signal(0),
     stretch: signal(null),
-    prediction: signal({ busy: false, scope: "chart" }),
     materialId: signal("acrylic"),
     gauges: { changes: signal(0), known: null, of: () => page.gauges.known },
-    limb: { direction: "course", girths: [] },
     online: signal(true),
     problem: signal(null),
     /** @param {unknown} problem */
@@ -35,8 +34,10 @@ function studio() {
     currentStrain: () => null,
     tooLarge: () => "",
     document: {
-      grid: { rows: 1, columns: 2, text: "KP" },
+      grid: Grid.fromText("KP"),
       outlineText: null,
+      shaped: false,
+      outline: Uint8Array.of(1, 1),
       onChange: (/** @type {() => void} */ heard) => (change = heard),
     },
     paint: () => change(),
@@ -123,9 +124,13 @@ test("a chart that is too large for a pose stays flat, and the reason is said", 
   assert.deepEqual(said, ["too large for curl"]);
 });
 
+/** A stitch of the chart as it was predicted. */
+const STITCH = { relaxed_course_mm: 50, relaxed_wale_mm: 2 };
+
 /** A service whose garment presses by 10 to 40 mmHg. @param {[operation: string, request: any][]} sent */
 function pressing(sent) {
   /** @type {any} */ (api).run = (/** @type {string} */ operation, /** @type {any} */ request) => {
+    if (operation === "predict") return Promise.resolve(STITCH);
     sent.push([operation, request]);
     const place = { mmhg: [10, 40] };
     return Promise.resolve({ id: "shape", places: [place], parts: [place], limit_mmhg: 32, notes: [] });
@@ -137,14 +142,15 @@ test("a shaped chart is worn with its outline, and its bar ends at the highest p
   const sent = [];
   pressing(sent);
   const page = studio();
-  page.document.outlineText = "x.";
+  page.document.shaped = true;
+  page.document.outline = Uint8Array.of(1, 0);
   startPoser(page);
   const shapes = shown(page, 1);
   page.seeing.pose.value = "worn";
   const [{ pressure }] = await shapes;
   assert.deepEqual([sent[0][0], sent[0][1].outline], ["limb", "x."]);
   assert.deepEqual([pressure.most, pressure.limit], [40, 32]);
-  page.seeing.limb.value = {};
+  page.seeing.limb.value = { ...page.seeing.limb.value };
   assert.equal(page.seeing.posed.value.pressure, undefined); // that of another limb
   page.seeing.pose.value = "flat";
 });
@@ -153,7 +159,8 @@ test("every pose has the size of a counted gauge, and is computed anew when one 
   for (const pose of ["lying", "hung", "worn"]) {
     /** @type {unknown[]} */
     const sent = [];
-    /** @type {any} */ (api).run = (/** @type {string} */ _, /** @type {any} */ { gauge }) => {
+    /** @type {any} */ (api).run = (/** @type {string} */ operation, /** @type {any} */ { gauge }) => {
+      if (operation === "predict") return Promise.resolve({ relaxed_course_mm: 50, relaxed_wale_mm: gauge ? 3 : 2 });
       sent.push(gauge);
       return Promise.resolve({ id: `shape ${sent.length}`, places: [], converged: true, notes: [] });
     };
@@ -175,26 +182,27 @@ test("every pose has the size of a counted gauge, and is computed anew when one 
   }
 });
 
-test("a limb of the chart's size grows with it, once that is known", async () => {
-  /** @type {[string, any][]} */
-  const sent = [];
-  pressing(sent);
-  const page = studio();
-  startPoser(page);
-  const first = shown(page, 1);
-  page.seeing.pose.value = "worn";
-  await first;
-  page.prediction.value = { busy: false, scope: "chart" }; // of the same size
-  const second = shown(page, 2); // the old one as a preview first
-  page.limb.girths = [{ at_mm: 0, girth_mm: 90 }];
-  page.prediction.value = { busy: false, scope: "selection" };
-  page.prediction.value = { busy: false, scope: "chart" };
-  await second;
+test("the limb fits the whole piece, whatever part of it is selected", async () => {
+  const girths = [];
+  for (const selection of [null, { row0: 0, row1: 1, column0: 0, column1: 1 }]) {
+    /** @type {[string, any][]} */
+    const sent = [];
+    pressing(sent);
+    const page = studio();
+    page.selection = { value: selection };
+    startPoser(page);
+    const worn = shown(page, 1);
+    page.seeing.pose.value = "worn";
+    await worn;
+    girths.push(sent[0][1].girths);
+    page.seeing.pose.value = "flat";
+  }
+  const around = 2 * STITCH.relaxed_course_mm;
   assert.deepEqual(
-    sent.map(([, { girths }]) => girths.length),
-    [0, 1],
+    girths[0].map((/** @type {any} */ { girth_mm }) => girth_mm),
+    [1.12 * around, 1.25 * around].map(Math.round),
   );
-  page.seeing.pose.value = "flat";
+  assert.deepEqual(girths[1], girths[0]);
 });
 
 test("a planned glove is worn on its hand until its stitches or its yarn change", async () => {
@@ -208,9 +216,9 @@ test("a planned glove is worn on its hand until its stitches or its yarn change"
   const shapes = shown(page, 1);
   page.seeing.pose.value = "worn";
   await shapes;
-  const change = { KK: () => (page.document.grid.text = "KK"), wool: () => (page.materialId.value = "wool") };
+  const change = { KK: () => (page.document.grid = Grid.fromText("KK")), wool: () => (page.materialId.value = "wool") };
   for (const changed of Object.values(change)) {
-    page.document.grid.text = "KP";
+    page.document.grid = Grid.fromText("KP");
     page.problem.value = null;
     const refused = new Promise((resolve) => page.problem.listen(resolve));
     page.seeing.pose.value = "worn";

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Grid } from "../../grid/grid.js";
-import { scopeOf, sizeAtRest } from "../../services/scope.js";
+import { limbOf, pieceIn, scopeOf, sizeAtRest } from "../../services/scope.js";
 
 /** @param {Partial<{purl: string, mask: number[]}>} options */
 function lassoed({ purl = "KKKK\nKPPK\nKKKK", mask } = {}) {
@@ -31,4 +31,29 @@ test("a part is as wide as its widest row and as high as its highest column, wit
   const { course, wale } = sizeAtRest(lassoed({ mask: [1, 0, 1, 0, 0, 0, 1, 0, 0] }), predicted);
   assert.deepEqual(course, { value: 10, interval: [8, 12] });
   assert.deepEqual(wale, { value: 6, interval: [4, 8] });
+});
+
+test("a part is worn as the piece it is, on a limb of its own size", () => {
+  const mask = [1, 1, 0, 1, 1, 0, 1, 1, 0];
+  const gauges = { of: () => null };
+  for (const [scope, outline] of /** @type {const} */ ([
+    [lassoed(), null],
+    [lassoed({ mask }), "xx.\nxx.\nxx."],
+  ])) {
+    const studio = {
+      gauges,
+      materialId: { value: "acrylic" },
+      seeing: { limb: { value: { direction: "wale", girths: null } } },
+    };
+    const page = /** @type {import("../../state/studio.js").Studio} */ (/** @type {unknown} */ (studio));
+    const piece = pieceIn(page, scope);
+    assert.deepEqual([piece.chart, piece.outline], [scope.counted.grid.text, outline]);
+    const stitch = /** @type {import("../../types.js").PredictResult} */ ({
+      relaxed_course_mm: 50,
+      relaxed_wale_mm: 30,
+    });
+    const { girths } = limbOf(page, scope, stitch);
+    assert.equal(girths[0].girth_mm, Math.round(1.12 * 3 * 30));
+    assert.equal(girths.at(-1)?.at_mm, 150);
+  }
 });

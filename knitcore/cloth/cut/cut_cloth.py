@@ -32,7 +32,7 @@ class Cloth(Result):
     sheet: Sheet
     corner_mm: tuple[float, float]
 
-    def law_at(self, x_mm: Array, y_mm: Array) -> NDArray[np.uint8]:
+    def law_at(self, x_mm: Array, y_mm: Array) -> NDArray[np.int32]:
         """Codes of the laws at material coordinates; beyond the sheet, those of its edge."""
         grid = self.sheet.grid
         column, row = (
@@ -42,8 +42,7 @@ class Cloth(Result):
                 (grid.row_lines, y_mm, self.corner_mm[1], grid.rows),
             )
         )
-        codes: NDArray[np.uint8] = grid.law_of_cell[row, column]
-        return codes
+        return np.asarray(grid.law_of_cell[row, column], dtype=np.int32)
 
 
 def cloth_under(
@@ -82,7 +81,7 @@ def cloth_under(
                 f"Use pieces of at most {MAX_STITCHES_PER_SIDE} stitches a side.",
             )
         covering = chart.tile(rows // chart.rows, columns // chart.columns)
-        # each patch of stitches has one law, because elements are larger than stitches
+        # one law for all quarters of a stitch, because elements are larger than stitches
         laws = quarter_laws(covering, material, size, even=True)
         sheet = chart_sheet(covering, material, model, shear_modulus, laws=laws)
         missing = extent - (sheet.grid.width_mm, sheet.grid.length_mm)

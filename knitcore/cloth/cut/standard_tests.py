@@ -299,8 +299,7 @@ def trellis_test(
 
 def _lock_up(cloth: Cloth, direction: Direction) -> float:
     """The largest lock-up strain of any of the cloth's laws."""
-    codes = np.unique(cloth.sheet.grid.law_of_cell)
-    return max(float(cloth.sheet.laws[code].lock_up_strain(direction)) for code in codes.tolist())
+    return max(law.lock_up_strain(direction) for law in cloth.sheet.laws)
 
 
 def _largest_strain(cloth: Cloth, width: float, length: float, angle_deg: float) -> float:

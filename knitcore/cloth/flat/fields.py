@@ -142,7 +142,7 @@ def triangle_utilisation(sheet: Sheet, strains: CellStrains) -> Array:
     return np.where(sheet.grid.cloth[..., None], used, 0.0)
 
 
-def stiffening_of(sheet: Sheet, codes: NDArray[np.uint8]) -> CoupledStiffening:
+def stiffening_of(sheet: Sheet, codes: NDArray[np.integer]) -> CoupledStiffening:
     """The stiffening of the laws with these codes (an array of any shape)."""
     names = ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy")
     return CoupledStiffening(*(sheet.parameters[name][codes] for name in names))
@@ -173,7 +173,7 @@ def node_fields(sheet: Sheet, state: State) -> Fields:
 
 
 def response(
-    sheet: Sheet, codes: NDArray[np.uint8], xx: Array, yy: Array, xy: Array
+    sheet: Sheet, codes: NDArray[np.integer], xx: Array, yy: Array, xy: Array
 ) -> dict[str, Array]:
     """Stresses and energy density at strains, by the codes of the laws (wrinkling not considered);
     arrays of one shape.

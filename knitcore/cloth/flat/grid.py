@@ -35,8 +35,8 @@ class QuarterGrid:
         x of the vertical lines, increasing.
     row_lines : float array (rows + 1,), mm
         y of the horizontal lines, increasing.
-    law_of_cell : uint8 array (rows, columns)
-        Which law a cell follows; for a chart, its phase code plus four times its patch.
+    law_of_cell : integer array (rows, columns)
+        Which law a cell follows; for a chart, its phase code plus four times its place.
     cloth : bool array (rows, columns)
         Which cells hold fabric. The others carry no load, whatever their law.
 
@@ -49,7 +49,7 @@ class QuarterGrid:
 
     column_lines: Array
     row_lines: Array
-    law_of_cell: NDArray[np.uint8]
+    law_of_cell: NDArray[np.integer]
     cloth: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
@@ -76,7 +76,7 @@ class QuarterGrid:
 
     @classmethod
     def between(
-        cls, column_lines: Array, row_lines: Array, law_of_cell: NDArray[np.uint8]
+        cls, column_lines: Array, row_lines: Array, law_of_cell: NDArray[np.integer]
     ) -> QuarterGrid:
         """Make a grid of cells that all hold fabric."""
         return cls(column_lines, row_lines, law_of_cell, np.ones(law_of_cell.shape, dtype=bool))

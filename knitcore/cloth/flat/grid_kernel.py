@@ -79,7 +79,7 @@ class Cells(NamedTuple):
     """
 
     columns: int
-    law: NDArray[np.uint8]
+    law: NDArray[np.int32]
     cloth: NDArray[np.bool_]
     width: Array
     height: Array
@@ -196,7 +196,7 @@ def _full_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Point:
 @compiled
 def respond(
     laws: NDArray[Any],
-    law_of_point: NDArray[np.uint8],
+    law_of_point: NDArray[np.int32],
     published: bool,
     fibres: Array,
     force: Array,

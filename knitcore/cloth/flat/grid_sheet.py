@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
@@ -61,13 +62,14 @@ class Linearisation:
 
 
 class Sheet:
-    """A sheet with one law per law code of its grid.
+    """A sheet with one law per law code of its grid, or a mixture of laws.
 
     Parameters
     ----------
     grid : the mesh.
     laws : laws by code (``grid.law_of_cell``); codes that do not occur may repeat any law.
     model : the energy model and its assumptions.
+    mixing : (codes, laws) shares of the laws in the constants of each code, if laws are mixed.
     log_sd : gives :attr:`stress_log_sd`, as in
         :class:`knitcore.prediction.quarter_laws.QuarterLaws`.
 
@@ -84,18 +86,21 @@ class Sheet:
         grid: QuarterGrid,
         laws: Sequence[ConstitutiveLaw],
         model: SheetModel,
+        mixing: scipy.sparse.csr_array | None = None,
         log_sd: Callable[[], Array] | None = None,
     ) -> None:
-        if int(grid.law_of_cell.max()) >= len(laws):
+        codes = len(laws) if mixing is None else mixing.shape[0]
+        if int(grid.law_of_cell.max()) >= codes:
             raise InputError("laws", "a cell has no law.", "Give a law for every code of the grid.")
         self.grid = grid
         self.model = model
         self._log_sd = log_sd
+        self._mixing = mixing
         self.laws = tuple(model.prepare(law) for law in laws)
-        self.parameters = model.parameters(laws)
+        self.parameters = self.by_code(model.parameters(laws))
         self._cells = Cells(
             columns=grid.columns,
-            law=grid.law_of_cell.ravel(),
+            law=grid.law_of_cell.ravel().astype(np.int32),
             cloth=grid.cloth.ravel(),
             width=grid.cell_size[0].ravel(),
             height=grid.cell_size[1].ravel(),
@@ -114,6 +119,17 @@ class Sheet:
         """The nodes as laid out."""
         return State(self.grid.corners.copy(), self.grid.centres.copy())
 
+    def by_code(self, laws: NDArray[np.void]) -> NDArray[np.void]:
+        """Records of the sheet's codes from those of its laws, mixed where the sheet mixes them.
+
+        Means of cube roots lie between laws in series and side by side, and keep signs and
+        stability.
+        """
+        if self._mixing is None:
+            return laws
+        roots = np.cbrt(laws.view(float).reshape(len(laws), -1))
+        return np.ascontiguousarray((self._mixing @ roots) ** 3).view(laws.dtype).ravel()
+
     def energy(self, state: State) -> float:
         """Stored energy, N·mm."""
         return self._assemble(self.parameters, state, _empty_like(state), None)
@@ -123,7 +139,7 @@ class Sheet:
 
         Parameters
         ----------
-        laws : (laws,), as :meth:`SheetModel.parameters` gives them; all 0 for no law.
+        laws : (codes,), as :meth:`by_code` gives them; all 0 for no law.
         state : positions.
         """
         force = _empty_like(state)

@@ -148,9 +148,9 @@ def chart_sheet(
     grid = QuarterGrid.of_chart(
         chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm
     )
-    patch = local.patch.repeat(2, axis=0).repeat(2, axis=1)
-    codes = (len(PHASES) * patch + grid.law_of_cell).astype(np.uint8)
-    return Sheet(replace(grid, law_of_cell=codes), local.laws, chosen, local.log_sd)
+    place = local.place.repeat(2, axis=0).repeat(2, axis=1)
+    grid = replace(grid, law_of_cell=len(PHASES) * place + grid.law_of_cell)
+    return Sheet(grid, local.laws, chosen, local.mixing, local.log_sd)
 
 
 def _local_laws(
@@ -166,9 +166,9 @@ def _local_laws(
     rows, columns = (np.flatnonzero(stitch.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     laws = quarter_laws(_continued(chart.purl[here], stitch[here]), material, size)
-    patch, scale = np.zeros(stitch.shape, dtype=np.intp), np.ones((*stitch.shape, 2))
-    patch[here], scale[here] = laws.patch, laws.scale
-    return replace(laws, patch=patch, scale=scale)
+    place, scale = np.zeros(stitch.shape, dtype=np.intp), np.ones((*stitch.shape, 2))
+    place[here], scale[here] = laws.place, laws.scale
+    return replace(laws, place=place, scale=scale)
 
 
 def _continued(purl: NDArray[np.bool_], stitch: NDArray[np.bool_]) -> StitchChart:
@@ -283,7 +283,8 @@ def lock_up_strain(sheet: Sheet, direction: Direction) -> float:
     if sheet.model.energy is EnergyModel.PUBLISHED:
         return float("inf")
     grid, axis = sheet.grid, direction.axis
-    limits = np.array([law.lock_up_strain(direction) for law in sheet.laws])[grid.law_of_cell]
+    with np.errstate(divide="ignore"):
+        limits = 1.0 / sheet.parameters[direction.of("alpha_xx", "alpha_yy")][grid.law_of_cell]
     along = 1 - axis
     through = grid.cloth.sum(axis=along) == np.count_nonzero(grid.cloth.any(axis=axis))
     reach = np.where(grid.cloth, grid.cell_size[axis] * (1 + limits), 0.0)

@@ -21,7 +21,7 @@ The lock-up (1 / alpha) is itself uncertain, and its utilisation with it.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -55,7 +55,7 @@ from knitcore.materials.law_uncertainty import (
     in_a_sentence,
     log_interval,
 )
-from knitcore.materials.material import FabricRecord, Material
+from knitcore.materials.material import Material
 from knitcore.prediction.quarter_laws import SPREAD_AT
 
 Vary = Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
@@ -104,7 +104,7 @@ class LawParameter:
 
     Attributes
     ----------
-    up, down : (laws,), the kernel's laws with this one raised and lowered by ``STEP``; 0 for
+    up, down : (codes,), the kernel's laws with this one raised and lowered by ``STEP``; 0 for
         laws without it.
     sd : of the parameter.
     model_sd : of the composite's error in it, which counts for strains.
@@ -180,7 +180,7 @@ class StripSpread:
             used = (slope * strains).sum(axis=0)
             for name, cells in enumerate((*strains, used)):
                 variances[name] += (full_sd * corner_means(grid, cells)) ** 2
-        locks = self._lock_up_sd[grid.law_of_cell]
+        locks = self._lock_up_sd[grid.law_of_cell % len(PHASES)]
         used = utilisation(sheet, cell_strains(sheet, state))
         direct = np.where(used[0] >= used[1], used[0] * locks[..., 0], used[1] * locks[..., 1])
         variances[2] += corner_means(grid, direct) ** 2
@@ -224,81 +224,77 @@ def model_log_sd(sheet: Sheet) -> float:
 
 
 def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
-    """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
-    log_sd = np.zeros((len(sheet.laws), 2))
-    for code in _codes(sheet):
-        spread = _record(material, code).uncertainty
-        log_sd[code] = [spread.curve(direction).log_lock_up for direction in Direction]
+    """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (phases, 2)."""
+    log_sd = np.zeros((len(PHASES), 2))
+    for phase in _phases(sheet):
+        spread = material.record(PHASES[phase]).uncertainty
+        log_sd[phase] = [spread.curve(direction).log_lock_up for direction in Direction]
     return log_sd
 
 
 def law_parameters(
     sheet: Sheet, material: Material, model_sd: float, stress_n_per_mm: float
-) -> list[LawParameter]:
-    """The uncertain parameters of a sheet's laws, one by one, and of the assumed shear modulus.
+) -> Iterator[LawParameter]:
+    """The uncertain parameters of a sheet's fabrics, one by one, and of the assumed shear modulus.
 
     ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
-    parameters = []
 
-    def add(codes: list[int], vary: Vary, sd: float, of_model: float = 0.0) -> None:
-        parameters.append(LawParameter(*_varied(sheet, codes, vary), sd, of_model))
+    def varied(phases: list[int], vary: Vary, sd: float, of_model: float = 0.0) -> LawParameter:
+        return LawParameter(*_varied(sheet, phases, vary), sd, of_model)
 
-    for code in _codes(sheet):
-        record = _record(material, code)
+    for phase in _phases(sheet):
+        record = material.record(PHASES[phase])
         spread = record.uncertainty
         for direction in Direction:
             sd = float(spread.log_stress(direction, stress_n_per_mm))
-            add([code], partial(_stress_scaled, direction), sd, model_sd)
-        add([code], _coupled, _coupling_sd(record.law, sheet.model.rule, spread))
+            yield varied([phase], partial(_stress_scaled, direction), sd, model_sd)
+        yield varied([phase], _coupled, _coupling_sd(record.law, sheet.model.rule, spread))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
-            add([code], partial(_scaled, "shear_modulus"), spread.log_shear)
-            add([code], partial(_scaled, "shear_stiffening"), LOG_SHEAR_STIFFENING)
+            yield varied([phase], partial(_scaled, "shear_modulus"), spread.log_shear)
+            yield varied([phase], partial(_scaled, "shear_stiffening"), LOG_SHEAR_STIFFENING)
     assumed = _of_assumed_shear(sheet, material)
     if assumed:
-        add(assumed, partial(_scaled, "shear_modulus"), LOG_SHEAR_PRIOR[1])
-    return parameters
+        yield varied(assumed, partial(_scaled, "shear_modulus"), LOG_SHEAR_PRIOR[1])
 
 
 def interval_source(sheet: Sheet, material: Material) -> str:
     """Name the sources of the intervals of a test of a sheet, in words."""
-    said = [_record(material, code).uncertainty.source for code in _codes(sheet)]
+    said = [material.record(PHASES[phase]).uncertainty.source for phase in _phases(sheet)]
     said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
     said += [MODEL_ERRORS] if model_log_sd(sheet) else []
     return in_a_sentence(said)
 
 
-def _codes(sheet: Sheet) -> list[int]:
-    """Codes of the laws that the cloth of a sheet follows."""
-    codes: list[int] = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
-    return codes
-
-
-def _record(material: Material, code: int) -> FabricRecord:
-    """The pure fabric whose law, perhaps fitted to a prediction, has this code."""
-    return material.record(PHASES[code % len(PHASES)])
+def _phases(sheet: Sheet) -> list[int]:
+    """Phases of the cells of a sheet's cloth."""
+    phases: list[int] = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth] % len(PHASES)).tolist()
+    return phases
 
 
 def _of_assumed_shear(sheet: Sheet, material: Material) -> list[int]:
-    """Codes of the laws whose shear modulus is the assumed one."""
+    """Phases whose shear modulus is the assumed one."""
     return [
-        code
-        for code in _codes(sheet)
+        phase
+        for phase in _phases(sheet)
         if sheet.model.shear_modulus is None
-        and _record(material, code).uncertainty.log_shear is None
-        and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
+        and material.record(PHASES[phase]).uncertainty.log_shear is None
+        and sheet.laws[phase].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
     ]
 
 
 def _varied(
-    sheet: Sheet, codes: list[int], vary: Vary
+    sheet: Sheet, phases: list[int], vary: Vary
 ) -> tuple[NDArray[np.void], NDArray[np.void]]:
-    """The kernel's records of these laws with a parameter raised and lowered; 0 for the others."""
+    """The kernel's records of the laws of these phases with a parameter raised and lowered; 0 for
+    the others.
+    """
+    varied = [code for code in range(len(sheet.laws)) if code % len(PHASES) in phases]
     tables = []
     for step in (STEP, -STEP):
-        table = np.zeros_like(sheet.parameters)
-        table[codes] = sheet.model.parameters([vary(sheet.laws[code], step) for code in codes])
-        tables.append(table)
+        table = np.zeros_like(sheet.model.parameters(sheet.laws))
+        table[varied] = sheet.model.parameters([vary(sheet.laws[code], step) for code in varied])
+        tables.append(sheet.by_code(table))
     return tables[0], tables[1]
 
 

@@ -86,18 +86,24 @@ def worn_tube(
     inside = shaped.stitch if by_row else shaped.stitch.T
     _check_tube(inside)
     chart = shaped.continued()
+    patches = patches_of(chart, material, size)
+    if size is None and shaped.is_rectangle:  # as of every rectangle, the predicted size is its own
+        course, wale = (patches.relaxed_mm(direction) for direction in Direction)
+        size = RelaxedSize(course, wale)
     sizes = neighbourhood_sizes(chart, material)
     sizes *= counted_over_computed(chart, material, size, shaped.stitch)
     if not by_row:
         sizes = sizes.transpose(1, 0, 2)[..., ::-1]
     rests = sizes[..., 0].sum(axis=1, where=inside)
     heights = sizes[..., 1].mean(axis=1, where=inside)
-    predictions = patches_of(chart, material, size).lines(around)
+    predictions = patches.lines(around, len(inside))
     places, along_mm = [], [0.0]
-    for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
-        prediction = predictions[line % len(predictions)].along(around)
+    lines = zip(predictions, rests.tolist(), heights.tolist(), strict=True)
+    for prediction, rest, height in lines:
         at = along_mm[-1] + 0.5 * height
-        place = place_on(prediction, at, float(np.interp(at, limb.at_mm, limb.girths_mm)), rest)
+        place = place_on(
+            prediction.along(around), at, float(np.interp(at, limb.at_mm, limb.girths_mm)), rest
+        )
         places.append(place)
         along_limb = 0.0 if place.pressure is None else place.pressure.axial_strain_free
         along_mm.append(along_mm[-1] + height * (1.0 + along_limb))
