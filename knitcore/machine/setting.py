@@ -1,5 +1,6 @@
 """The stitch number of a piece on a machine, and the yarn of its loops there."""
 
+import re
 from dataclasses import dataclass
 
 from knitcore.base.errors import InputError
@@ -8,8 +9,10 @@ from knitcore.garment.regions import yarn_use
 from knitcore.machine.dial import Dial, DialSetting
 from knitcore.machine.profile import MachineProfile
 from knitcore.machine.tension import LoopYarn
-from knitcore.materials import Material
+from knitcore.materials import Laws, Material
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
+
+_MARK = re.compile(r"\.[0-9a-f]{6}$")
 
 
 @dataclass(frozen=True)
@@ -29,8 +32,11 @@ class MachineSetting:
 
 
 def yarn_identifier(material: Material) -> str:
-    """The name under which a profile has the swatches of a material."""
-    return material.identifier.partition(":")[0]
+    """The name under which a profile has the swatches of a material.
+
+    It has no mark of laws, nor of the content of a user's material, which may change.
+    """
+    return _MARK.sub("", Laws.REFITTED.of(material.identifier).removeprefix("own:"))
 
 
 def setting_of(

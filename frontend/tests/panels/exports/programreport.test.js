@@ -5,6 +5,7 @@ import { reportRows } from "../../../panels/exports/programreport.js";
 const REPORT = {
   interval_source: "",
   machine: "Kniterate, 7 gauge",
+  stitch_number: 6,
   passes: 27,
   knit_passes: 15,
   transfer_passes: 10,

@@ -1,0 +1,100 @@
+/**
+ * The stitch number of the machine on show: from two swatches of the user's, or a guess. Swatches are kept in the
+ * machine's profile, which goes with the design.
+ *
+ * @import {Studio} from "../../state/studio.js"
+ * @import {DialResult} from "../../types.js"
+ */
+
+import { ApiError, api } from "../../api.js";
+import { figure } from "../../core/format.js";
+import { h } from "../../elements/dom.js";
+import { download } from "../../services/exporter.js";
+import { textButton } from "../../widgets/buttons.js";
+import { numberField } from "../../widgets/fields.js";
+
+const SWATCHES = ["First swatch", "Second swatch"];
+
+/** What a number stands on, in a sentence. @param {DialResult} dial */
+export function dialWords({ number, loop_length_mm, loop_length_interval_mm: [low, high], guessed }) {
+  const basis = guessed ? "a guess from the gauge" : "by your swatches";
+  return `Stitch number ${number} gives ${figure(loop_length_mm)} mm of yarn a stitch (${figure(low)} to ${figure(high)}), ${basis}.`;
+}
+
+/**
+ * @param {Studio} studio
+ * @param {() => string} machine the machine on show
+ */
+export function swatchFields(studio, machine) {
+  const rows = SWATCHES.map((name) => {
+    const number = numberField({ min: "0", step: "any", "aria-label": `${name}, stitch number` });
+    const length = numberField({ min: "0", step: "any", "aria-label": `${name}, yarn per stitch in mm` });
+    const row = h("div", { class: "line gap-8" }, h("span", {}, name), number, "number,", length, "mm a stitch");
+    return { number, length, row };
+  });
+  const words = h("p", { class: "small", role: "status" });
+  const use = textButton("check", "Use these swatches", () => void keep(), { class: "button", id: "export-swatches" });
+  const save = textButton("export", "Save the profile", () => store(), { class: "button quiet" });
+  let profile = "";
+
+  /** @param {Partial<import("../../types.js").DialRequest>} more */
+  async function ask(more) {
+    const shown = machine();
+    const material = studio.materialId.value;
+    try {
+      const dial = await api.run("dial", { machine: shown, material, ...more });
+      if (shown !== machine()) return null; // another one is on show by now
+      words.textContent = dialWords(dial);
+      save.hidden = dial.swatches.length === 0;
+      profile = dial.profile;
+      return dial;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      words.textContent = `${error.problem.detail} ${error.problem.remedy ?? ""}`.trim();
+      save.hidden = true;
+      return null;
+    }
+  }
+
+  async function keep() {
+    const swatches = rows
+      .map(({ number, length }) => ({ number: number.valueAsNumber, loop_length_mm: length.valueAsNumber }))
+      .filter((swatch) => Object.values(swatch).every(Number.isFinite));
+    if (swatches.length === 0) words.textContent = "Give the stitch number and the yarn per stitch of each swatch.";
+    else if (await ask({ swatches })) studio.machine.value = profile;
+  }
+
+  const store = () => {
+    const { identifier } = JSON.parse(profile);
+    download(`${identifier}.json`, new Blob([profile], { type: "application/json" }));
+  };
+
+  const element = h(
+    "details",
+    { class: "small stack gap-8" },
+    h("summary", {}, "Stitch number from two swatches of yours"),
+    h(
+      "p",
+      { class: "muted" },
+      "Knit two swatches of this yarn at different numbers. Unravel ten stitches of each and divide their length by ten.",
+    ),
+    ...rows.map(({ row }) => row),
+    h("div", { class: "line gap-8" }, use, save),
+    words,
+  );
+  element.addEventListener("toggle", () => void show());
+
+  /** Show what is known of the machine and the yarn, where it is looked at. */
+  async function show() {
+    if (!element.open) return;
+    const dial = await ask({});
+    for (const [index, { number, length }] of rows.entries()) {
+      const kept = dial?.swatches[index];
+      if (document.activeElement === number || document.activeElement === length) continue;
+      number.value = kept ? String(kept.number) : "";
+      length.value = kept ? String(kept.loop_length_mm) : "";
+    }
+  }
+  save.hidden = true;
+  return { element, show };
+}
