@@ -8,10 +8,10 @@ import click
 from pydantic import Field
 
 from knitcore.base.errors import InputError
-from knitcore.machine.dial import Dial, with_swatches
+from knitcore.machine.dial import Dial, DialSetting, with_swatches
 from knitcore.machine.profile import MAX_BYTES, DialSwatch, machine_of
 from knitcore.machine.setting import yarn_identifier
-from knitcore.machine.tension import LoopYarn
+from knitcore.materials import Material
 
 from ...cli.options import out_option
 from ...context import Context
@@ -80,17 +80,26 @@ def dial(request: DialRequest, context: Context) -> DialResult:
         swatches = [DialSwatch(s.number, s.loop_length_mm, yarn) for s in request.swatches]
         machine = with_swatches(replace(machine, swatches=others), swatches)
     fit = Dial(machine, yarn)
-    loop_length_mm = request.loop_length_mm or LoopYarn.of(material).loop_length_mm
     return DialResult.of(
-        fit.setting(loop_length_mm),
+        _setting(fit, material, request.loop_length_mm),
         machine=machine.name,
         material=yarn,
         swatches=[
             DialSwatchInput(number=s.number, loop_length_mm=s.loop_length_mm) for s in fit.swatches
         ],
         profile=machine.to_json(),
-        interval_source=f"90 %: {fit}.",
+        interval_source=f"S{str(fit)[1:]}.",
     )
+
+
+def _setting(fit: Dial, material: Material, loop_length_mm: float | None) -> DialSetting:
+    """The number for a loop length, or the nearest one for that of the material."""
+    if loop_length_mm is not None:
+        return fit.setting(loop_length_mm)
+    known = [r.loop_length_mm for r in material.fabrics.values() if r.loop_length_mm]
+    if not known:
+        known = [fit.loop_length_mm(fit.machine.stitch_number.default)[0]]
+    return fit.nearest(sum(known) / len(known))
 
 
 @click.option(

@@ -97,19 +97,18 @@ export function create(studio, { keeper, open }) {
     iconButton("plus", "Count up", () => tally(place.count + 1)),
     textButton(null, "Set to 0", () => tally(0), { class: "button quiet" }),
   );
-  const reading = h("div", { class: "along-main" }, row, picture, next, counter, kept);
+  const files = h(
+    "div",
+    { class: "line wrap gap-8" },
+    textButton("export", "File from this row", fromHere, { class: "button quiet", id: "along-file" }),
+    textButton("copy", "Print all rows", print, { class: "button quiet" }),
+  );
+  const reading = h("div", { class: "along-main" }, row, picture, next, counter, kept, files);
   const paper = h("div", { class: "along-paper" });
   const element = dialog(
     "along-dialog",
     "Knit along",
-    h(
-      "div",
-      { class: "along-tools line gap-8" },
-      ways,
-      h("label", { class: "line gap-5" }, "Row", number),
-      textButton("export", "File from this row", fromHere, { class: "button quiet", id: "along-file" }),
-      textButton("copy", "Print", print, { class: "button quiet" }),
-    ),
+    h("div", { class: "along-tools line gap-8" }, ways, h("label", { class: "line gap-5" }, "Row", number)),
     bar,
     status,
     reading,
@@ -213,7 +212,7 @@ export function create(studio, { keeper, open }) {
 
   /** @param {KnitAlongResult["rows"][number]} worked */
   const sideOf = ({ heading: words, leftwards }) =>
-    along?.needles.length ? `${capital(words)}, goes to the ${leftwards ? "left ←" : "right →"}` : capital(words);
+    along?.needles.length ? `${capital(words)}, goes ${leftwards ? "left\u00a0←" : "right\u00a0→"}` : capital(words);
 
   /** @param {string} text */
   const remarkOf = (text) => h("p", { class: "muted small" }, text);

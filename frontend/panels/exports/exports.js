@@ -76,13 +76,6 @@ export function create(studio, { view }) {
       }),
       sides,
     ),
-    finish: choice(
-      "export-finish",
-      "The last row",
-      { waste: "ends in waste yarn", "bind-off": "is bound off" },
-      "waste",
-      (value) => (chosen.finish = value),
-    ),
     machine: machine.element,
     dial: h(
       "div",
@@ -90,9 +83,16 @@ export function create(studio, { view }) {
       labelled("Stitch number", stitch, "that of the yarn's loops if left empty"),
       swatches.element,
     ),
-    price: h("div", { class: "line gap-8" }, "Price of yarn, per kg", perKg, "per hour", perHour),
+    finish: choice(
+      "export-finish",
+      "The last row",
+      { waste: "ends in waste yarn", "bind-off": "is bound off" },
+      "waste",
+      (value) => (chosen.finish = value),
+    ),
     from: labelled("From row", from, "to go on after a break or a jam"),
     tex: labelled("Yarn, tex (g/km)", tex, "for its mass"),
+    price: h("div", { class: "line gap-8" }, "Price of yarn, per kg", perKg, "per hour", perHour),
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });

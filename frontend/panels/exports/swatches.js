@@ -3,23 +3,15 @@
  * machine's profile, which goes with the design.
  *
  * @import {Studio} from "../../state/studio.js"
- * @import {DialResult} from "../../types.js"
  */
 
 import { ApiError, api } from "../../api.js";
-import { figure } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
 import { download } from "../../services/exporter.js";
 import { textButton } from "../../widgets/buttons.js";
 import { numberField } from "../../widgets/fields.js";
 
 const SWATCHES = ["First swatch", "Second swatch"];
-
-/** What a number stands on, in a sentence. @param {DialResult} dial */
-export function dialWords({ number, loop_length_mm, loop_length_interval_mm: [low, high], guessed }) {
-  const basis = guessed ? "a guess from the gauge" : "by your swatches";
-  return `Stitch number ${number} gives ${figure(loop_length_mm)} mm of yarn a stitch (${figure(low)} to ${figure(high)}), ${basis}.`;
-}
 
 /**
  * @param {Studio} studio
@@ -29,7 +21,14 @@ export function swatchFields(studio, machine) {
   const rows = SWATCHES.map((name) => {
     const number = numberField({ min: "0", step: "any", "aria-label": `${name}, stitch number` });
     const length = numberField({ min: "0", step: "any", "aria-label": `${name}, yarn per stitch in mm` });
-    const row = h("div", { class: "line gap-8" }, h("span", {}, name), number, "number,", length, "mm a stitch");
+    const row = h(
+      "div",
+      { class: "line gap-8" },
+      h("span", {}, `${name}: number`),
+      number,
+      length,
+      "mm of yarn a stitch",
+    );
     return { number, length, row };
   });
   const words = h("p", { class: "small", role: "status" });
@@ -44,7 +43,7 @@ export function swatchFields(studio, machine) {
     try {
       const dial = await api.run("dial", { machine: shown, material, ...more });
       if (shown !== machine()) return null; // another one is on show by now
-      words.textContent = dialWords(dial);
+      words.textContent = dial.interval_source;
       save.hidden = dial.swatches.length === 0;
       profile = dial.profile;
       return dial;
@@ -69,18 +68,20 @@ export function swatchFields(studio, machine) {
     download(`${identifier}.json`, new Blob([profile], { type: "application/json" }));
   };
 
+  const hint =
+    "Knit two swatches of this yarn at different numbers. Unravel ten stitches of each and divide their length by ten.";
   const element = h(
     "details",
-    { class: "small stack gap-8" },
+    { class: "small" },
     h("summary", {}, "Stitch number from two swatches of yours"),
     h(
-      "p",
-      { class: "muted" },
-      "Knit two swatches of this yarn at different numbers. Unravel ten stitches of each and divide their length by ten.",
+      "div",
+      { class: "stack gap-8" },
+      h("p", { class: "muted" }, hint),
+      ...rows.map(({ row }) => row),
+      h("div", { class: "line gap-8" }, use, save),
+      words,
     ),
-    ...rows.map(({ row }) => row),
-    h("div", { class: "line gap-8" }, use, save),
-    words,
   );
   element.addEventListener("toggle", () => void show());
 

@@ -46,6 +46,15 @@ test("a program's table gives time, yarn by carrier and the tightest loops", () 
   assert.match(rows["Transfers straight across"], /^9 passes, tightest loop at rest$/);
 });
 
+test("a home machine has work by hand in place of passes of transfers", () => {
+  const yarns = [{ carrier: "A (main yarn)", loops: 90, length_m: 12.34, mass_g: 5.6 }];
+  const home = { passes: 15, knit_passes: 15, transfer_passes: 0, empty_passes: 0, kinds_of_transfer: [], yarns };
+  const rows = Object.fromEntries(reportRows({ ...REPORT, ...home }));
+  assert.equal(rows.Passes, "15");
+  assert.equal(rows["By hand"], "40 stitches moved or latched up");
+  assert.ok("Yarn A (main yarn)" in rows);
+});
+
 test("a price gives a cost", () => {
   assert.match(reportRows({ ...REPORT, cost: 4.5 })[0][1], /costs 4\.50$/);
 });
