@@ -127,7 +127,7 @@ class Dial:
 
     @cached_property
     def swatches(self) -> tuple[DialSwatch, ...]:
-        """Those of the yarn."""
+        """The swatches of the yarn."""
         return tuple(swatch for swatch in self.machine.swatches if swatch.yarn == self.yarn)
 
     @property
@@ -206,7 +206,7 @@ class Dial:
         return default + (loop_length_mm - float(self._fit[0][0])) / self._slope
 
     def _number(self, exact: float) -> float:
-        """What the machine can be set to."""
+        """The nearest number that the machine can be set to."""
         return float(round(exact)) if self.machine.stitch_number.whole else round(exact, 1) + 0.0
 
     def __contains__(self, number: float) -> bool:

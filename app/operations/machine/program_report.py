@@ -10,6 +10,7 @@ from knitcore.chart.stitch_chart import check_stitches
 from knitcore.formats.designs.layout import DesignLayout, piece_of
 from knitcore.machine.duration import CarrierYarn, hand_report, program_report
 from knitcore.machine.home.hand_plan import hand_plan
+from knitcore.machine.home.plan_rows import minutes_in_words
 from knitcore.machine.profile import machine_of
 from knitcore.machine.program import Finish, knitout_program
 from knitcore.machine.setting import setting_of
@@ -161,7 +162,7 @@ def _lines(result: ProgramReportResult) -> list[str]:
         passes += f"; {result.empty_passes} passes bring the carriage back"
     if result.rackings:
         passes += f"; {result.rackings} rackings"
-    lines = [f"machine  {result.machine}", f"time     {result.minutes:.0f} min", passes]
+    lines = [f"machine  {result.machine}", f"time     {minutes_in_words(result.minutes)}", passes]
     lines += result.notes
     lines += [f"carrier {y.carrier}  {y.length_m:.1f} m, {y.mass_g:.1f} g" for y in result.yarns]
     if result.cost is not None:

@@ -51,6 +51,7 @@ test("a home machine has work by hand in place of passes of transfers", () => {
   const home = { passes: 15, knit_passes: 15, transfer_passes: 0, empty_passes: 0, kinds_of_transfer: [], yarns };
   const rows = Object.fromEntries(reportRows({ ...REPORT, ...home }));
   assert.equal(rows.Passes, "15");
+  assert.match(reportRows({ ...REPORT, minutes: 652 })[0][1], /^10 h 52 min without stops/);
   assert.equal(rows["By hand"], "40 stitches moved or latched up");
   assert.ok("Yarn A (main yarn)" in rows);
 });
