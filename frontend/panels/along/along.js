@@ -49,7 +49,7 @@ export function create(studio, { keeper, open }) {
       onchange: () => {
         way = ways.value;
         saveSettings({ along: way });
-        void load();
+        void load().then(() => along && go(place.row)); // this is the way of the piece from now on
       },
     },
     h("option", { value: way }, way),

@@ -6,13 +6,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import Fabric, InputError, StitchChart
+from knitcore import Fabric, InputError, StitchChart, material
 from knitcore.formats.read.knitout_reader import KnitoutMismatchError, knitted_chart, verified
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile, profiles
 from knitcore.machine.program import Finish, knitout_program
 from knitcore.machine.program_check import check_program
+from knitcore.machine.tension import BREAK_RISK, LoopYarn, pass_tensions
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
 
@@ -308,6 +309,39 @@ def test_what_a_machine_cannot_knit_is_refused_with_a_remedy(
 def test_a_single_bed_knits_a_plain_rectangle() -> None:
     program = knitout_program(DESIGNS["plain"], machine=SINGLE_BED)
     assert check_program(program.text, SINGLE_BED) == ()
+
+
+LACE = material("lace-acrylic")
+
+
+def test_short_loops_are_staged_so_that_racking_spares_them() -> None:
+    machine = profile("v-bed-half-gauge")
+    short = LoopYarn.of(LACE, loop_length_mm=6.2)
+    program = knitout_program(DESIGNS["shaped"], machine=machine, yarn=short)
+    assert "come to the front" in program.spared
+    risky = [step for step in pass_tensions(program.text, short, machine) if step.tightest]
+    assert max(step.tightest.break_chance for step in risky if step.tightest) < BREAK_RISK
+    long = LoopYarn.of(LACE, loop_length_mm=7.2)
+    plain = knitout_program(DESIGNS["shaped"], machine=machine, yarn=long)
+    assert plain.spared == ""
+
+
+def test_transfers_that_may_break_the_yarn_are_slowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("knitcore.machine.program.BREAK_RISK", 0.0)
+    seed = StitchChart.of_fabric("seed", rows=3, columns=4)
+    yarn = LoopYarn.of(LACE, loop_length_mm=11)
+    program = knitout_program(seed, machine=replace(KNITERATE, waste_passes=4), yarn=yarn)
+    assert "Slowed to 50: " in program.spared
+    lines = program.text.splitlines()
+    slow = [index for index, line in enumerate(lines) if line == "x-speed-number 50"]
+    assert slow
+    for index in slow:
+        assert lines[index + 1].startswith("xfer")
+        after = next(line for line in lines[index + 1 :] if not line.startswith("xfer"))
+        assert after == "x-speed-number 100"
+    watched = knitout_program(seed, machine=profile("v-bed-half-gauge"), yarn=yarn)
+    assert "Slow down and watch" in watched.spared
+    assert "x-speed" not in watched.text
 
 
 def test_32_x_32_is_exported_and_verified() -> None:
