@@ -131,6 +131,17 @@ export const api = {
   /** @type {() => Promise<import("./types.js").Machines>} */
   machines: () => call("/machines"),
 
+  /** @type {(design: string) => Promise<import("./types.js").KnittingPlaces>} */
+  places: (design) => call(`/designs/${encodeURIComponent(design)}/places`),
+
+  /** @type {(design: string, way: string, body: import("./types.js").PlaceRequest) => Promise<void>} */
+  keepPlace: (design, way, body) =>
+    call(`/designs/${encodeURIComponent(design)}/places/${encodeURIComponent(way)}`, {
+      method: "PUT",
+      body,
+      keepalive: true,
+    }),
+
   /** @type {() => Promise<Extensions>} */
   extensions: () => call("/extensions"),
 

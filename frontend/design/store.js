@@ -98,9 +98,10 @@ export function saveGauges(gauges) {
 }
 
 /**
- * Where somebody is in knitting a piece: the row at hand, 0 before the first, and a count of their own.
+ * Where somebody is in knitting a piece: the row at hand, 0 before the first, a count of their own, and whether the
+ * service has not heard of it yet.
  *
- * @typedef {{row: number, count: number}} KnittingPlace
+ * @typedef {{row: number, count: number, unsent?: boolean}} KnittingPlace
  */
 
 /** @returns {[piece: string, place: KnittingPlace][]} the last one last */

@@ -2,30 +2,42 @@
  * The rows of a piece for whoever knits it, and where they are in it.
  *
  * @import {Studio} from "../state/studio.js"
+ * @import {KnittingPlace} from "../design/store.js"
  * @import {KnitAlongRequest, KnitAlongResult} from "../types.js"
+ * @import {Machine} from "./machines.js"
  */
 
 import { ApiError, api } from "../api.js";
-import { loadRows, saveRows } from "../design/store.js";
+import { loadPlace, loadRows, savePlace, saveRows } from "../design/store.js";
+import { ownMachine } from "./machines.js";
 
-/** Home machines, by their names for the service. @type {Record<string, string>} */
-export const HOME_MACHINES = {
-  brother: "Brother, one bed",
-  "brother-ribber": "Brother with ribber",
-  "silver-reed": "Silver Reed, one bed",
-  "silver-reed-ribber": "Silver Reed with ribber",
-  ayab: "Brother with AYAB",
-};
+/** The row from which the next program or plan begins, after a jam. */
+export const resume = { row: 1 };
 
-/** How a piece is knitted. @type {Record<string, string>} */
-export const WAYS = { flat: "By hand, flat", round: "By hand, in the round", ...HOME_MACHINES };
+/**
+ * Ways to knit a piece: by hand, on the home machines of the service, and on one of the user's own.
+ *
+ * @param {readonly Machine[]} machines
+ * @param {string | null} chosen the machine of the design
+ * @returns {Record<string, string>} their words
+ */
+export function waysOf(machines, chosen) {
+  const own = ownMachine(chosen);
+  const home = [...machines, ...(own ? [own] : [])].filter(({ reads_programs }) => !reads_programs);
+  return {
+    flat: "By hand, flat",
+    round: "By hand, in the round",
+    ...Object.fromEntries(home.map(({ identifier, name }) => [identifier, name])),
+  };
+}
 
-/** @param {Pick<Studio, "document">} studio @param {string} way @returns {KnitAlongRequest} */
-export function alongRequest({ document: chart }, way) {
+/** @param {Pick<Studio, "document" | "machine" | "materialId">} studio @param {string} way @returns {KnitAlongRequest} */
+export function alongRequest({ document: chart, machine: { value: chosen }, materialId }, way) {
   const { chart: text, outline, regions, repeats, shelf } = chart.content;
-  const machine = way in HOME_MACHINES ? way : null;
+  const byHand = way === "flat" || way === "round";
+  const machine = byHand ? null : ownMachine(chosen)?.identifier === way ? chosen : way;
   const construction = way === "round" ? "round" : "flat";
-  return { chart: text, outline, regions, repeats, shelf, machine, construction };
+  return { chart: text, outline, regions, repeats, shelf, machine, construction, material: materialId.value };
 }
 
 /**
@@ -73,3 +85,76 @@ export const stepOf = (key) =>
     Home: -Infinity,
     End: Infinity,
   })[key] ?? 0;
+
+/**
+ * The place in a piece: with the design at the service, so that another device goes on there, and in the browser
+ * while there is no service.
+ */
+export class Places {
+  #sending = false;
+
+  /**
+   * @param {() => string | null} design the service's name for the design, if it has one
+   * @param {(state: "design" | "browser" | "nowhere") => void} kept says where it is kept
+   */
+  constructor(design, kept) {
+    this.design = design;
+    this.kept = kept;
+  }
+
+  /** The way in which the piece was knitted last; "" where that is not known. @returns {Promise<string>} */
+  async lastWay() {
+    return (await this.#ofDesign())[0]?.way ?? "";
+  }
+
+  /** @param {string} piece its name in the browser @param {string} way @returns {Promise<KnittingPlace>} */
+  async load(piece, way) {
+    const here = loadPlace(piece);
+    if (here.unsent) return (this.#send(piece, way), here);
+    const there = (await this.#ofDesign()).find((place) => place.way === way);
+    this.kept(this.design() ? "design" : "browser");
+    return there ? { row: there.row, count: there.count } : here;
+  }
+
+  /** @param {string} piece @param {string} way @param {KnittingPlace} place */
+  save(piece, way, { row, count }) {
+    const isKept = savePlace(piece, { row, count, unsent: true });
+    if (this.design()) this.#send(piece, way, { row, count });
+    else this.kept(isKept ? "browser" : "nowhere");
+  }
+
+  /** @returns {Promise<import("../types.js").KnittingPlaces["places"]>} */
+  async #ofDesign() {
+    const design = this.design();
+    if (!design) return [];
+    try {
+      return (await api.places(design)).places;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      return []; // the browser's own is the best there is
+    }
+  }
+
+  /** Send the latest place, one at a time. @param {string} piece @param {string} way @param {KnittingPlace} [latest] */
+  async #send(piece, way, latest = loadPlace(piece)) {
+    const design = this.design();
+    this.waiting = { design, piece, way, latest };
+    if (this.#sending || !design) return;
+    this.#sending = true;
+    try {
+      while (this.waiting) {
+        const { design: name, piece: of, way: how, latest: place } = this.waiting;
+        this.waiting = null;
+        if (!name) continue;
+        await api.keepPlace(name, how, { row: place.row, count: place.count });
+        if (!this.waiting) savePlace(of, { row: place.row, count: place.count });
+        this.kept("design");
+      }
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.kept("browser");
+    } finally {
+      this.#sending = false;
+    }
+  }
+}

@@ -139,6 +139,11 @@ class Piece(Result):
         )
         return Piece(shaped, self.yarns, self.yarn_of[:, columns])
 
+    def mirrored(self) -> Piece:
+        """The piece with left and right exchanged."""
+        shaped = ShapedChart(StitchChart(self.chart.purl[:, ::-1]), self.shaped.stitch[:, ::-1])
+        return Piece(shaped, self.yarns, self.yarn_of[:, ::-1], self.gauge)
+
     def __eq__(self, other: object) -> bool:
         """Equal if every stitch has the same kind, and a yarn of the same name and colour."""
         if not isinstance(other, Piece) or self.shaped != other.shaped:

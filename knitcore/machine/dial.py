@@ -10,13 +10,12 @@ proportion to the distance of needles that swatches outweigh: L₀ = 3.2 ± 0.5 
 the whole range, in needles. The guess is from two yarns of the library (lace on a Stoll machine,
 stitch size 12: 3.6; worsted on needles of its stitch width: 3.1). Where a machine's numbers are
 places in its own table (its default lies at the end of the range), there is no guess, and two
-swatches are needed.
+swatches are needed. Swatches are kept in the machine's profile.
 """
 
-import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -24,39 +23,14 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
-from knitcore.machine.profile import MachineProfile, profile
+from knitcore.machine.profile import DialSwatch, MachineProfile
 from knitcore.materials import Interval
 
 LEVEL, LEVEL_SD = 3.2, 0.5
 SLOPE, SLOPE_SD = 2.4, 1.2
 SWATCH_ERROR = 0.03
 """Relative error of a loop length from a weighed or unravelled swatch; assumed."""
-FORMAT = "knitcore-dial"
 _Z_90 = 1.645
-
-
-@dataclass(frozen=True)
-class DialSwatch:
-    """A swatch knitted at a stitch number, and its yarn per stitch."""
-
-    number: float
-    loop_length_mm: float
-
-    @classmethod
-    def unravelled(cls, number: float, yarn_mm: float, stitches: int) -> "DialSwatch":
-        """A swatch of which the yarn of some stitches was measured."""
-        return cls(number, yarn_mm / stitches)
-
-    @classmethod
-    def weighed(cls, number: float, mass_g: float, tex: float, stitches: int) -> "DialSwatch":
-        """A swatch that was weighed.
-
-        Examples
-        --------
-        >>> DialSwatch.weighed(6, mass_g=4.0, tex=250, stitches=1600).loop_length_mm
-        10.0
-        """
-        return cls(number, mass_g / tex * 1e6 / stitches)
 
 
 @dataclass(frozen=True)
@@ -101,9 +75,8 @@ class Dial:
 
     Attributes
     ----------
-    machine : whose numbers they are.
-    yarn : its name.
-    swatches : of that yarn on that machine.
+    machine : whose numbers they are; its profile has the swatches.
+    yarn : the identifier of the material.
 
     Raises
     ------
@@ -113,14 +86,15 @@ class Dial:
 
     Examples
     --------
-    >>> dial = Dial(profile("kniterate"), "wool", (DialSwatch(5, 9.2), DialSwatch(7, 11.6)))
+    >>> from knitcore.machine.profile import profile
+    >>> swatches = DialSwatch(5, 9.2, "wool"), DialSwatch(7, 11.6, "wool")
+    >>> dial = Dial(with_swatches(profile("kniterate"), swatches), "wool")
     >>> dial.setting(10.4).number
     6.0
     """
 
     machine: MachineProfile
     yarn: str = ""
-    swatches: tuple[DialSwatch, ...] = ()
 
     def __post_init__(self) -> None:
         numbers = self.machine.stitch_number
@@ -150,6 +124,11 @@ class Dial:
                 "larger stitch numbers gave shorter loops.",
                 "Check which swatch was knitted at which number.",
             )
+
+    @cached_property
+    def swatches(self) -> tuple[DialSwatch, ...]:
+        """The swatches of the yarn."""
+        return tuple(swatch for swatch in self.machine.swatches if swatch.yarn == self.yarn)
 
     @property
     def _pitch_mm(self) -> float:
@@ -201,11 +180,7 @@ class Dial:
             If the machine has no number for it.
         """
         numbers = self.machine.stitch_number
-        exact = numbers.default + (loop_length_mm - float(self._fit[0][0])) / self._slope
-        value, interval = self.loop_length_mm(exact)
-        spread = (value - interval.low) / self._slope
-        number = float(round(exact)) if numbers.whole else round(exact, 1)
-        if not numbers.least <= number <= numbers.most:
+        if self._number(self._exact(loop_length_mm)) not in self:
             shortest, longest = (self.loop_length_mm(n)[0] for n in (numbers.least, numbers.most))
             raise InputError(
                 "loop_length_mm",
@@ -213,42 +188,59 @@ class Dial:
                 f"not of {loop_length_mm:g} mm.",
                 "Choose another yarn, or a machine of another gauge.",
             )
+        return self.nearest(loop_length_mm)
+
+    def nearest(self, loop_length_mm: float) -> DialSetting:
+        """The stitch number for a loop length, or the one that comes nearest to it."""
+        numbers = self.machine.stitch_number
+        exact = self._exact(loop_length_mm)
+        value, interval = self.loop_length_mm(exact)
+        spread = (value - interval.low) / self._slope
+        number = min(max(self._number(exact), numbers.least), numbers.most)
         there, around = self.loop_length_mm(number)
         ends = Interval(exact - spread, exact + spread)
         return DialSetting(number, exact, ends, there, around, guessed=not self.swatches)
 
-    def to_json(self) -> str:
-        """The dial as the content of a file."""
-        swatches = [asdict(swatch) for swatch in self.swatches]
-        document = {
-            "format": FORMAT,
-            "machine": self.machine.identifier,
-            "yarn": self.yarn,
-            "swatches": swatches,
-        }
-        return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    def _exact(self, loop_length_mm: float) -> float:
+        default = self.machine.stitch_number.default
+        return default + (loop_length_mm - float(self._fit[0][0])) / self._slope
 
-    @classmethod
-    def read(cls, content: bytes | str, machines: Sequence[MachineProfile] = ()) -> "Dial":
-        """Read the content of a file; machines of the user's own are looked up first.
+    def _number(self, exact: float) -> float:
+        """The nearest number that the machine can be set to."""
+        return float(round(exact)) if self.machine.stitch_number.whole else round(exact, 1) + 0.0
 
-        Raises
-        ------
-        InputError
-            If it is no such file, or names a machine that is not known.
-        """
-        try:
-            document = json.loads(content)
-            if document["format"] != FORMAT:
-                raise ValueError
-            swatches = tuple(
-                DialSwatch(float(s["number"]), float(s["loop_length_mm"]))
-                for s in document["swatches"]
-            )
-            name, yarn = str(document["machine"]), str(document.get("yarn", ""))
-        except (ValueError, KeyError, TypeError) as error:
-            raise InputError(
-                "dial", "this is no file of stitch numbers.", "Give one that Knitcore wrote."
-            ) from error
-        own = {machine.identifier: machine for machine in machines}
-        return cls(own.get(name) or profile(name), yarn, swatches)
+    def __contains__(self, number: float) -> bool:
+        """Say whether the machine has a number."""
+        return self.machine.stitch_number.least <= number <= self.machine.stitch_number.most
+
+    def __str__(self) -> str:
+        default = self.machine.stitch_number.default
+        value, (low, high) = self.loop_length_mm(default)
+        count = len(self.swatches)
+        basis = f"{count} swatch{'es' * (count > 1)}" if count else "a guess from the gauge"
+        return (
+            f"stitch number {default:g} gives loops of {value:.1f} mm ({low:.1f} to {high:.1f}), "
+            f"each further number {self._slope:.2g} mm more; by {basis}"
+        )
+
+
+def with_swatches(machine: MachineProfile, swatches: Sequence[DialSwatch]) -> MachineProfile:
+    """The machine with further swatches in its profile, and what they say of each yarn.
+
+    Raises
+    ------
+    InputError
+        If a swatch cannot be right, or one more is needed.
+    """
+    known = [*machine.swatches, *(swatch for swatch in swatches if swatch not in machine.swatches)]
+    changed = replace(machine, swatches=tuple(known))
+    fits = [f"{yarn or 'yarn'}: {Dial(changed, yarn)}" for yarn in yarns_of(changed)]
+    if not fits:
+        return machine
+    words = f"swatches of the user's; {'; '.join(fits)}"
+    return replace(changed, sources={**machine.sources, "swatches": words})
+
+
+def yarns_of(machine: MachineProfile) -> tuple[str, ...]:
+    """Yarns with swatches, in the order of the profile."""
+    return tuple(dict.fromkeys(swatch.yarn for swatch in machine.swatches))

@@ -1,10 +1,12 @@
 """The passes, minutes, yarn, cost and tightest loops of a program on a machine."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from knitcore.base.bounds import check_positive
+from knitcore.garment.piece import Piece, yarn_name
+from knitcore.machine.home.plan_rows import HandPlan
 from knitcore.machine.profile import MachineProfile
 from knitcore.machine.program_passes import ProgramPass, ProgramReading, read_passes
 from knitcore.machine.tension import LoopTension, LoopYarn, PassTension, pass_tensions, tightest_of
@@ -121,35 +123,15 @@ class ProgramReport:
             "tightest": self.tightest and self.tightest.to_dict(),
         }
 
-    def lines(self) -> list[str]:
-        """The report in a few lines of text."""
-        lines = [
-            f"{self.machine}: {self.minutes:.0f} min, {self.passes} passes "
-            f"({self.knit_passes} knit, {self.transfer_passes} transfer {self.transfers} loops, "
-            f"{self.empty_passes} are empty), {self.rackings} rackings",
-            *(
-                f"carrier {yarn.carrier}: {yarn.length_m:.1f} m, {yarn.mass_g:.1f} g"
-                for yarn in self.yarns
-            ),
-        ]
-        if self.cost is not None:
-            lines.append(f"cost {self.cost:.2f}")
-        lines += [
-            f"rack {kind.rack:g}: {kind.passes} passes, {kind.transfers} transfers, tightest loop "
-            f"{kind.tightest or 'at rest'} (line {kind.line})"
-            for kind in self.kinds_of_transfer
-        ]
-        return lines
-
 
 def program_report(
     program: str,
     machine: MachineProfile,
     yarn: LoopYarn,
-    *,
-    tex_of_carriers: Mapping[str, float] | None = None,
     price_per_kg: float | None = None,
     price_per_hour: float | None = None,
+    *,
+    tex_of_carriers: Mapping[str, float] | None = None,
 ) -> ProgramReport:
     """Report the figures of a program on a machine.
 
@@ -158,27 +140,20 @@ def program_report(
     program : in knitout.
     machine : gives the times of passes, transfers and rackings.
     yarn : of all carriers, with the loop length of all stitches.
-    tex_of_carriers : linear densities of carriers with another yarn, g/km.
     price_per_kg, price_per_hour : of yarn and of the machine, in any one currency.
+    tex_of_carriers : linear densities of carriers with another yarn, g/km.
 
     Raises
     ------
     InputError
         If a line of the program cannot be read, or a price is not positive.
     """
-    for name, price in (("price_per_kg", price_per_kg), ("price_per_hour", price_per_hour)):
-        if price is not None:
-            check_positive(name, price, "a currency", "a price", 1e6)
     reading = read_passes(program)
     empty = _empty_passes(reading, machine)
     seconds = sum(_seconds(step, machine) for step in reading.passes)
     width = max((step.high - step.low for step in reading.passes), default=0.0)
     seconds += empty * _travel_s(width, machine) + reading.rackings * machine.times.racking_s
     yarns = _yarns(reading, machine, yarn, tex_of_carriers or {})
-    cost = None
-    if price_per_kg is not None or price_per_hour is not None:
-        cost = sum(of.mass_g for of in yarns) / 1000 * (price_per_kg or 0)
-        cost += seconds / 3600 * (price_per_hour or 0)
     transfers = [step for step in reading.passes if step.kind == "transfer"]
     return ProgramReport(
         machine.name,
@@ -189,10 +164,67 @@ def program_report(
         reading.rackings,
         seconds / 60,
         yarns,
-        cost,
+        _cost(yarns, seconds, price_per_kg, price_per_hour),
         pass_tensions(program, yarn, machine),
         machine.source("times"),
         yarn.source,
+    )
+
+
+def hand_report(
+    plan: HandPlan,
+    piece: Piece,
+    machine: MachineProfile,
+    yarn: LoopYarn,
+    price_per_kg: float | None = None,
+    price_per_hour: float | None = None,
+) -> ProgramReport:
+    """Report the figures of a plan for a home machine, whose yarns stand for carriers.
+
+    Parameters are those of :func:`program_report`.
+
+    Raises
+    ------
+    InputError
+        If a price is not positive.
+    """
+    yarns = tuple(
+        CarrierYarn(f"{yarn_name(index)} ({of.name})", loops, metres, metres * yarn.tex / 1000)
+        for index, of in enumerate(piece.yarns)
+        for loops in [int(piece.cells(index).sum())]
+        for metres in [loops * yarn.loop_length_mm / 1000]
+    )
+    return ProgramReport(
+        machine.name,
+        len(plan.rows),
+        0,
+        0,
+        sum(len(task.needles) for task in plan.tasks),
+        0,
+        plan.minutes,
+        yarns,
+        _cost(yarns, plan.minutes * 60, price_per_kg, price_per_hour),
+        (),
+        f"{machine.source('times')}; work by hand: our guess for a practised knitter, without "
+        "casting on and binding off",
+        "nothing is racked",
+    )
+
+
+def _cost(
+    yarns: Sequence[CarrierYarn],
+    seconds: float,
+    price_per_kg: float | None,
+    price_per_hour: float | None,
+) -> float | None:
+    """Price of yarn and time; None if neither has a price."""
+    for name, price in (("price_per_kg", price_per_kg), ("price_per_hour", price_per_hour)):
+        if price is not None:
+            check_positive(name, price, "a currency", "a price", 1e6)
+    if price_per_kg is None and price_per_hour is None:
+        return None
+    return sum(of.mass_g for of in yarns) / 1000 * (price_per_kg or 0) + (
+        seconds / 3600 * (price_per_hour or 0)
     )
 
 

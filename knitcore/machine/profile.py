@@ -132,6 +132,24 @@ class PassTimes:
 
 
 @dataclass(frozen=True)
+class DialSwatch:
+    """A swatch of the user's, knitted on the machine.
+
+    Attributes
+    ----------
+    number : the stitch number that it was knitted with.
+    loop_length_mm : yarn of a stitch.
+    yarn : the identifier of its material.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    number: _Number
+    loop_length_mm: _Above
+    yarn: Annotated[str, Field(max_length=80)] = ""
+
+
+@dataclass(frozen=True)
 class MachineProfile:
     """A knitting machine.
 
@@ -151,6 +169,7 @@ class MachineProfile:
     bed_gap_mm : from a hook to the one that it faces, in a transfer; None takes a stated guess in
         proportion to the distance of the needles.
     take_down_n : force on each loop; None takes a stated guess.
+    swatches : of the user's, from which :mod:`knitcore.machine.dial` has stitch numbers.
     sources : where figures come from, by field; the empty name stands for all others.
     """
 
@@ -178,6 +197,7 @@ class MachineProfile:
     bed_gap_mm: _Above | None = None
     take_down_n: _Above | None = None
     waste_passes: Annotated[int, Field(ge=2, le=200)] = 70
+    swatches: Annotated[tuple[DialSwatch, ...], Field(max_length=200)] = ()
     format: Literal["knitcore-machine"] = field(default="knitcore-machine", repr=False)
     version: Literal[1] = field(default=1, repr=False)
 

@@ -15,27 +15,30 @@ knit or tuck does so in a pass of its own.
 Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
-from collections import Counter
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import pairwise
 
 import numpy as np
 
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.piece import Piece
-from knitcore.machine.carriers import CarrierPlan, CarrierRow, plan_carriers
-from knitcore.machine.feed import FirstCourse, HookFeed, WasteFeed, is_leftwards
+from knitcore.machine.carriers import plan_carriers
 from knitcore.machine.profile import DEFAULT, Dialect, MachineProfile, profile, profiles
+from knitcore.machine.program_body import ProgramBody
+from knitcore.machine.tension import (
+    BREAK_RISK,
+    LoopYarn,
+    PassTension,
+    breaking,
+    pass_tensions,
+    tightest_of,
+)
 
-WASTE_COURSES = 6
-TAG_STITCHES = 4
-ANCHOR_TUCKS = 3
-"""Tucks that hold a yarn brought in within a course."""
-MAX_LOOPS = 3
-"""Loops that a needle's hook holds well."""
+_COURSE = re.compile(r"; course (\d+)")
+_NEEDLE = re.compile(r"([fb]s?)(-?\d+)")
 
 
 class Finish(StrEnum):
@@ -58,6 +61,7 @@ class KnitoutProgram:
     machine : the profile that it is for.
     stitch_number : of the piece.
     draws_waste : true if waste yarn takes the place of the draw thread.
+    spared : what was done so that transfers do not break the yarn, in a sentence; or empty.
     """
 
     text: str
@@ -67,6 +71,7 @@ class KnitoutProgram:
     machine: str = DEFAULT
     stitch_number: float | None = None
     draws_waste: bool = False
+    spared: str = ""
 
 
 def knitout_program(
@@ -75,6 +80,7 @@ def knitout_program(
     finish: Finish = Finish.WASTE,
     machine: MachineProfile | None = None,
     stitch_number: float | None = None,
+    yarn: LoopYarn | None = None,
 ) -> KnitoutProgram:
     """The program of a chart; :func:`knitcore.formats.read.knitout_reader.verified` checks it.
 
@@ -84,13 +90,15 @@ def knitout_program(
     finish : how it ends.
     machine : the machine's profile; :data:`knitcore.machine.profile.DEFAULT` if none is given.
     stitch_number : of the piece's stitches; the profile's default if none is given.
+    yarn : of the piece: transfers that would break it are staged, slowed or refused; None does not
+        look at it.
 
     Raises
     ------
     InputError
         If the machine reads no programs, has no such stitch number, is narrower than the chart, has
         fewer carriers than the chart has blocks of colour, or lacks the bed or the racking that
-        the piece needs.
+        the piece needs; or if transfers would break the yarn.
 
     Examples
     --------
@@ -101,30 +109,138 @@ def knitout_program(
     number = _checked_number(machine, stitch_number)
     piece = Piece.of(chart)
     _check_machine(piece, machine)
-    plan = plan_carriers(piece, machine.carriers)
-    body = _Body(piece, plan, machine, number)
-    courses = [*body.cast_on(), *body.courses()]
-    yarns = piece.yarns
-    lines = [
-        *_headers(machine),
-        *(f"; carrier {k} knits {yarns[y].colour} {yarns[y].name}" for k, y in plan.yarns.items()),
-        *body.start(),
-        *courses,
-        *(body.waste() if finish is Finish.WASTE else body.bind_off()),
-    ]
-    _check_beds(lines, machine)
+    lines, spared = _knitted(piece, machine, number, finish, yarn)
     stitch = piece.shaped.stitch
     changed = (piece.chart.purl[1:] ^ piece.chart.purl[:-1]) & stitch[1:] & stitch[:-1]
     crossings = int(np.count_nonzero(changed))
+    park = machine.carriers
+    plan = plan_carriers(piece, park)
+    begin = lines.index("; cast-on")
+    end = lines.index("; waste yarn" if finish is Finish.WASTE else "; bind-off")
     return KnitoutProgram(
         "\n".join(lines) + "\n",
         crossings,
-        sum(line.startswith("xfer") for line in courses) - crossings,
+        max(sum(line.startswith("xfer") for line in lines[begin:end]) - crossings, 0),
         len(plan.yarns),
         machine.identifier,
         number,
         plan.draw == plan.waste,
+        spared,
     )
+
+
+def _knitted(
+    piece: Piece, machine: MachineProfile, number: float, finish: Finish, yarn: LoopYarn | None
+) -> tuple[list[str], str]:
+    """The lines of a program that the yarn stands, and what was done for it."""
+    lines = _lines(piece, machine, number, finish, yarn)
+    if yarn is None:
+        return lines, ""
+    risky = _risky(lines, yarn, machine)
+    staged = frozenset(_course(lines, step.line) - 1 for step in risky if step.rack)
+    spared = ""
+    if staged:
+        lines = _lines(piece, machine, number, finish, yarn, staged)
+        rows = f"{len(staged)} {'course' if len(staged) == 1 else 'courses'}"
+        spared = f"Before {rows}, all loops come to the front so that racking spares the yarn."
+        risky = _risky(lines, yarn, machine)
+    worst = tightest_of(risky)
+    if worst is None:
+        return lines, spared
+    course = _course(lines, worst.line)
+    if (refusal := breaking(worst, yarn, machine)) is not None:
+        problem = f"course {course}: {refusal.problem}"
+        raise InputError("transfers", problem, refusal.remedy)
+    speed = machine.speed
+    slow = speed and (speed.transfer or speed.default / 2)
+    if slow:
+        lines = _slowed(lines, {step.line for step in risky}, slow, speed.default if speed else 0)
+    how = f"Slowed to {slow:g}" if slow else "Slow down and watch"
+    passes = f"{len(risky)} {'pass' if len(risky) == 1 else 'passes'} of transfers"
+    chance = worst.tightest.break_chance if worst.tightest else 0.0
+    slowed = f"{how}: {passes}, the tightest of course {course}: {chance:.0%} chance of a break."
+    return lines, f"{spared} {slowed}".strip()
+
+
+def _risky(lines: Sequence[str], yarn: LoopYarn, machine: MachineProfile) -> list[PassTension]:
+    return [
+        step
+        for step in pass_tensions("\n".join(lines), yarn, machine)
+        if step.tightest is not None and step.tightest.break_chance >= BREAK_RISK
+    ]
+
+
+def _course(lines: Sequence[str], number: int) -> int:
+    """The course that a line belongs to; 1 before the first."""
+    above = (_COURSE.fullmatch(line) for line in reversed(lines[:number]))
+    return next((int(match[1]) for match in above if match), 1)
+
+
+def _slowed(lines: Sequence[str], starts: set[int], slow: float, usual: float) -> list[str]:
+    """The lines with another speed for passes of transfers that begin at some of them."""
+    changed: list[str] = []
+    is_slow = False
+    for number, line in enumerate(lines, 1):
+        if is_slow and not line.startswith("xfer"):
+            changed.append(f"x-speed-number {usual:g}")
+            is_slow = False
+        if number in starts and not is_slow:
+            changed.append(f"x-speed-number {slow:g}")
+            is_slow = True
+        changed.append(line)
+    return changed
+
+
+def _lines(
+    piece: Piece,
+    machine: MachineProfile,
+    number: float,
+    finish: Finish,
+    yarn: LoopYarn | None,
+    staged: frozenset[int] = frozenset(),
+) -> list[str]:
+    """All lines of a program.
+
+    Yarn comes from the right by a hook, and from the left otherwise; a machine that is the other
+    way round knits the mirrored program of the mirrored piece.
+    """
+    park = machine.carriers
+    is_mirrored = not park.hooks and park.parking == "right"
+    piece = piece.mirrored() if is_mirrored else piece
+    plan = plan_carriers(piece, park)
+    body = ProgramBody(piece, plan, machine, number, yarn, staged)
+    yarns = piece.yarns
+    lines = [
+        *body.start(),
+        *body.cast_on(),
+        *body.courses(),
+        *(body.waste() if finish is Finish.WASTE else body.bind_off()),
+    ]
+    _check_beds(lines, machine)
+    return [
+        *_headers(machine),
+        *(f"; carrier {k} knits {yarns[y].colour} {yarns[y].name}" for k, y in plan.yarns.items()),
+        *(_mirrored(lines) if is_mirrored else lines),
+    ]
+
+
+def _mirrored(lines: Sequence[str]) -> Iterator[str]:
+    """Passes of a machine on which left is right."""
+    passes = [line for line in lines if not line.startswith((";", "x-"))]
+    needles = [int(match[2]) for line in passes for match in _NEEDLE.finditer(line)]
+    ends = min(needles) + max(needles)
+    ways = str.maketrans("+-", "-+")
+    for line in lines:
+        if line.startswith((";", "x-")):
+            yield line
+        elif line.startswith("rack "):
+            yield f"rack {-int(line[5:])}"
+        else:
+            operation, *words = line.split(" ")
+            words = [word.translate(ways) if word in "+-" else word for word in words]
+            yield " ".join(
+                [operation, *(_NEEDLE.sub(lambda m: f"{m[1]}{ends - int(m[2])}", w) for w in words)]
+            )
 
 
 def _headers(machine: MachineProfile) -> Iterator[str]:
@@ -162,13 +278,6 @@ def _check_machine(piece: Piece, machine: MachineProfile) -> None:
             f"{machine.name} is worked by hand: it reads no program.",
             f"Export written rows or a chart for it, or a program for {', '.join(others)}.",
         )
-    park = machine.carriers
-    if not park.hooks and park.parking == "right":
-        raise InputError(
-            "carriers.parking",
-            "without a hook, programs bring yarn in from the left only.",
-            "Say left, or let hooks be true.",
-        )
     columns, rows = piece.chart.columns, piece.chart.rows
     if columns > machine.columns:
         parts = -(-columns // machine.columns)
@@ -195,260 +304,10 @@ def _check_machine(piece: Piece, machine: MachineProfile) -> None:
 
 
 def _check_beds(lines: Sequence[str], machine: MachineProfile) -> None:
-    """Refuse transfers that a machine cannot make."""
+    """Refuse transfers to a bed that there is not."""
     if machine.beds == 1 and any(" b" in line for line in lines if line[0] != ";"):
         raise InputError(
             "outline",
             f"decreases and bind-offs move loops over a second bed; {machine.name} has one.",
             "Knit a rectangle that ends in waste yarn, or choose a machine with two beds.",
         )
-    racks = machine.racking.most_needles < machine.needles_per_column
-    if racks and any(line.startswith("rack") for line in lines):
-        raise InputError(
-            "outline",
-            f"decreases and bind-offs rack a bed by {machine.needles_per_column} needles; that of "
-            f"{machine.name} racks {machine.racking.most_needles:g}.",
-            "Knit a rectangle that ends in waste yarn, or choose a machine that racks further.",
-        )
-
-
-class _Body:
-    """The passes of a program, with the bed of each loop."""
-
-    def __init__(
-        self, piece: Piece, plan: CarrierPlan, machine: MachineProfile, number: float
-    ) -> None:
-        self._piece, self._plan, self._machine = piece, plan, machine
-        self._spans = piece.shaped.spans
-        self._back: dict[int, bool] = {}
-        self._held: Counter[int] = Counter()
-        first = range(*self._spans[0])
-        backs = piece.chart.purl[0]
-        needles = FirstCourse(
-            [self._number(c) for c in first if not backs[c]],
-            [self._number(c) for c in first if backs[c]],
-            self._number(min(a for a, _ in self._spans)),
-            self._number(max(b for _, b in self._spans) - 1),
-        )
-        feed = HookFeed if machine.carriers.hooks else WasteFeed
-        self._feed: HookFeed = feed(machine, plan, needles, number)
-
-    def start(self) -> Iterator[str]:
-        """Settings, and the waste yarn that comes first on a machine without a hook."""
-        return self._feed.start()
-
-    def cast_on(self) -> Iterator[str]:
-        """Tucks on every other needle and back on the rest, each on its first stitch's bed."""
-        yield "; cast-on"
-        for run, carrier in reversed(self._plan.rows[0].runs):
-            columns = range(run.start, run.stop)
-            yield from self._feed.bring(carrier)
-            yield from self._there_and_back(columns, carrier, 0, 0)
-            yield from self._feed.hold(carrier)
-            for column in columns:
-                self._held[column] += self._feed.base_loops
-
-    def courses(self) -> Iterator[str]:
-        """The chart, course by course; odd courses (row 1, 3, …) run leftwards."""
-        for row, carriers in enumerate(self._plan.rows):
-            yield f"; course {row + 1}"
-            waiting = set(carriers.new) if row else set()
-            if row:
-                yield from self._shape(row, carriers, waiting)
-                yield from self._cross(row)
-            yield from self._course(row, carriers, waiting)
-
-    def _shape(self, row: int, carriers: CarrierRow, waiting: set[int]) -> Iterator[str]:
-        below, here = self._spans[row - 1], self._spans[row]
-        leftwards = is_leftwards(row)
-        right_loss = range(below[1] - 1, here[1] - 1, -1)
-        left_loss = range(below[0], here[0])
-        right_gain, left_gain = range(below[1], here[1]), range(here[0], below[0])
-        losses, gains = (right_loss, left_loss), (right_gain, left_gain)
-        begin, end = (0, 1) if leftwards else (1, 0)
-        inwards = -1 if leftwards else 1
-        yield from self._lose(list(losses[end]), None, inwards=-inwards)
-        for carrier in carriers.ended:
-            yield from self._feed.end(carrier, row)
-        if gains[end]:
-            strand = self._feed.strand(on_left=leftwards)
-            yield from self._feed.bring(strand)
-            yield from self._there_and_back(gains[end], strand, row, row + 1)
-            yield from self._feed.hold(strand)
-            yield from self._feed.end_strand(strand)
-        # A chain goes on as the course's first run, or it needs a strand of its own.
-        first, parked = (self._plan.rows[r].runs[-1 if leftwards else 0][1] for r in (row, row - 1))
-        chain = parked if parked == first and first not in carriers.new else None
-        yield from self._lose(list(losses[begin]), chain, inwards=inwards)
-        edge = gains[begin]
-        for run, carrier in carriers.runs:
-            new = range(max(run.start, edge.start), min(run.stop, edge.stop))
-            if new:
-                yield from self._gain(new, carrier, row, waiting)
-
-    def _lose(self, columns: list[int], carrier: int | None, *, inwards: int) -> Iterator[str]:
-        """Put the loops of an edge, the outermost first, onto the first one that stays.
-
-        Several are chained by a yarn that is present, or by a strand brought in for it.
-        """
-        if not columns:
-            return
-        is_chained = carrier is None and len(columns) > 1
-        strand = self._feed.strand(on_left=inwards > 0) if is_chained else None
-        for column in (*columns[strand is None :], columns[-1] + inwards):
-            yield from self._to_bed(column, back=False)
-        sign = "-" if inwards < 0 else "+"
-        if strand is not None:
-            first = "-" if self._feed.needs_anchor else sign
-            yield from self._feed.bring(strand)
-            yield f"knit {first} {self._needle(False, columns[0])} {strand}"
-            yield from self._feed.hold(strand)
-            carrier = strand
-        for here, beside in pairwise((*columns, columns[-1] + inwards)):
-            yield from self._onto(here, beside)
-            self._held[beside] += self._held.pop(here)
-            del self._back[here]
-            if beside != columns[-1] + inwards:
-                self._held[beside] = 1
-                yield f"knit {sign} {self._needle(False, beside)} {carrier}"
-        if strand is not None:
-            yield from self._feed.end_strand(strand)
-
-    def _gain(self, columns: range, carrier: int, row: int, waiting: set[int]) -> Iterator[str]:
-        """Cast on with the yarn of the course, which then begins at the outer edge."""
-        leftwards = is_leftwards(row)
-        if carrier in waiting:
-            waiting.remove(carrier)
-            yield from self._feed.bring(carrier)
-            if self._feed.comes_from_right(row) == leftwards:
-                yield from self._there_and_back(columns, carrier, row, row)
-            else:
-                yield from self._zigzag(columns, carrier, leftwards=True)
-            yield from self._feed.hold(carrier)
-        else:
-            yield from self._zigzag(columns, carrier, leftwards=not leftwards)
-
-    def _zigzag(self, columns: range, carrier: int, *, leftwards: bool) -> Iterator[str]:
-        """One pass of tucks, from bed to bed so that each is a loop."""
-        for column in sorted(columns, reverse=leftwards):
-            self._back[column], self._held[column] = bool(column % 2), 1
-            sign = "-" if leftwards else "+"
-            yield f"tuck {sign} {self._needle(self._back[column], column)} {carrier}"
-
-    def _there_and_back(self, columns: range, carrier: int, row: int, begins: int) -> Iterator[str]:
-        """Tucks for a row on every other needle, and back on the rest.
-
-        They begin on the side where yarn comes from for the row ``begins``.
-        """
-        from_right = self._feed.comes_from_right(begins)
-        outwards, back = ("-", "+") if from_right else ("+", "-")
-        order = columns[::-1] if from_right else columns
-        beds = self._piece.chart.purl[row]
-        for sign, tucked in ((outwards, order[::2]), (back, order[1::2][::-1])):
-            for column in tucked:
-                self._back[column], self._held[column] = bool(beds[column]), 1
-                yield f"tuck {sign} {self._needle(beds[column], column)} {carrier}"
-
-    def _cross(self, row: int) -> Iterator[str]:
-        """Loops that go to the back in one pass, and those that come to the front in another."""
-        purl = self._piece.chart.purl[row]
-        for back in (True, False):
-            for column in range(*self._spans[row]):
-                if purl[column] == back:
-                    yield from self._to_bed(column, back=back)
-
-    def _to_bed(self, column: int, *, back: bool) -> Iterator[str]:
-        if self._back[column] != back:
-            yield f"xfer {self._needle(not back, column)} {self._needle(back, column)}"
-            self._back[column] = back
-
-    def _course(self, row: int, carriers: CarrierRow, waiting: set[int]) -> Iterator[str]:
-        beds, leftwards = self._piece.chart.purl[row], is_leftwards(row)
-        sign = "-" if leftwards else "+"
-        order = carriers.runs[::-1] if leftwards else carriers.runs
-        for place, (run, carrier) in enumerate(order):
-            columns = range(run.start, run.stop)
-            if carrier in waiting:
-                yield from self._feed.bring(carrier)
-                if not leftwards and self._feed.needs_anchor:
-                    anchor = columns[1 : 2 * ANCHOR_TUCKS : 2] or columns
-                    for column in reversed(anchor):
-                        yield from self._tie(column, row, carrier, "-")
-                    yield from self._feed.hold(carrier)
-            for column in reversed(columns) if leftwards else columns:
-                self._held[column] = 1
-                yield f"knit {sign} {self._needle(beds[column], column)} {carrier}"
-            if place + 1 < len(order):
-                beside = columns[0] - 1 if leftwards else columns.stop
-                if not self._machine.tuck_with_knit and self._held[beside] < MAX_LOOPS:
-                    last = beside + (1 if leftwards else -1)
-                    back = "+" if leftwards else "-"
-                    yield f"miss {back} {self._needle(beds[last], last)} {carrier}"
-                yield from self._tie(beside, row, carrier, sign)
-            if carrier in waiting and leftwards:
-                yield from self._feed.hold(carrier)
-
-    def _tie(self, column: int, row: int, carrier: int, sign: str) -> Iterator[str]:
-        """Tuck a yarn into a stitch of another, unless that needle is full."""
-        if self._held[column] < MAX_LOOPS:
-            self._held[column] += 1
-            needle = self._needle(self._piece.chart.purl[row, column], column)
-            yield f"tuck {sign} {needle} {carrier}"
-
-    def waste(self) -> Iterator[str]:
-        """Courses of another yarn on the same needles, after which all loops are dropped."""
-        beds, columns = self._piece.chart.purl[-1], range(*self._spans[-1])
-        strand = self._feed.strand(on_left=True)
-        for _, carrier in self._plan.rows[-1].runs:
-            yield from self._feed.end(carrier, None)
-        yield "; waste yarn"
-        yield from self._feed.waste_settings()
-        yield from self._feed.bring(strand)
-        for course in range(WASTE_COURSES):
-            leftwards = is_leftwards(course) == self._feed.needs_anchor
-            sign, order = ("-", columns[::-1]) if leftwards else ("+", columns)
-            for column in order:
-                yield f"knit {sign} {self._needle(beds[column], column)} {strand}"
-            if course == 1:
-                yield from self._feed.hold(strand)
-        yield from self._feed.finish(after_waste=True)
-        for column in columns:
-            yield f"drop {self._needle(beds[column], column)}"
-
-    def bind_off(self) -> Iterator[str]:
-        """A chain along the edge: each loop is put onto its neighbour and both are knitted."""
-        yield "; bind-off"
-        # The yarn is at the edge that the last course ran to; the chain starts there.
-        rightwards = is_leftwards(len(self._spans) - 1)
-        sign, back = ("+", "-") if rightwards else ("-", "+")
-        columns = range(*self._spans[-1])[:: 1 if rightwards else -1]
-        runs = self._plan.rows[-1].runs
-        (_, carrier), *others = runs if rightwards else runs[::-1]
-        for _, other in others:
-            yield from self._feed.end(other, None)
-        for column in columns[1:] or columns:
-            yield from self._to_bed(column, back=False)
-        for here, beside in pairwise(columns):
-            yield from self._onto(here, beside)
-            yield f"knit {sign} {self._needle(False, beside)} {carrier}"
-        last = columns[-1]
-        if len(columns) > 1:
-            for way in (back, sign) * (TAG_STITCHES // 2):
-                yield f"knit {way} {self._needle(False, last)} {carrier}"
-        yield from self._feed.end(carrier, None)
-        yield from self._feed.finish(after_waste=False)
-        yield f"drop {self._needle(False, last)}"
-
-    def _onto(self, here: int, beside: int) -> Iterator[str]:
-        """Move a loop onto its neighbour on the front bed."""
-        yield from self._to_bed(here, back=True)
-        yield f"rack {(beside - here) * self._machine.needles_per_column}"
-        yield f"xfer {self._needle(True, here)} {self._needle(False, beside)}"
-        yield "rack 0"
-        self._back[here] = False
-
-    def _number(self, column: int) -> int:
-        return column * self._machine.needles_per_column + 1
-
-    def _needle(self, back: bool | np.bool_, column: int) -> str:
-        return f"{'b' if back else 'f'}{self._number(column)}"

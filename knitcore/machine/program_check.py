@@ -7,6 +7,7 @@ stitches: the kinds that users of the public back ends report. Whether the loops
 
 import math
 import re
+from collections import Counter
 from dataclasses import dataclass, field
 
 from knitcore.machine.profile import Dialect, MachineProfile
@@ -15,6 +16,8 @@ _MAGIC = re.compile(r";!knitout-\d+")
 _NEEDLE = re.compile(r"([fb])s?(-?\d{1,6})")
 _HEADERS = {"Machine", "Gauge", "Width", "Position", "Carriers"}
 _YARN_FIRST = "Bring yarn in with `in`, after waste yarn that holds its end."
+MOST_LOOPS = 4
+"""Loops beyond which a needle's hook loses some."""
 _IN = {"in", "inhook", "out", "outhook", "releasehook"}
 
 
@@ -61,16 +64,18 @@ def check_program(program: str, machine: MachineProfile) -> tuple[ProgramProblem
     Examples
     --------
     >>> from knitcore.machine.profile import profile
-    >>> text = ";!knitout-2\\n;;Carriers: 1 2 3 4 5 6\\nin 1\\nknit + f1 1\\nrack 3\\nout 1\\n"
-    >>> [str(problem) for problem in check_program(text, profile("kniterate"))]
-    ['line 5: racking: 3 is beyond the limit of 2 needles. Transfer in steps of at most 2 needles.']
+    >>> text = ";!knitout-2\\n;;Carriers: 1 2\\ninhook 1\\nknit - f1 1\\nrack 5\\nouthook 1\\n"
+    >>> [str(problem) for problem in check_program(text, profile("swg091n2"))]
+    ['line 5: racking: 5 is beyond the limit of 4 needles. Transfer in steps of at most 4 needles.']
     """
     check = _Check(machine)
     lines = program.removeprefix("\ufeff").split("\n")
     check.read_headers(lines)
     for check.line, text in enumerate(lines, 1):
         words = text.split(";", 1)[0].split()
-        if words and not words[0].startswith("x-"):
+        if words and words[0].startswith("x-"):
+            check.read_setting(words[0], words[1:])
+        elif words:
             check.read(words[0], words[1:])
     check.end()
     return tuple(sorted(check.problems.values(), key=lambda problem: problem.line))
@@ -101,6 +106,10 @@ class _Check:
         self._span_line = 1
         self._keeps = False
         self._came_from: dict[str, str] = {}
+        self._loops: Counter[str] = Counter()
+        self._hooked = ""
+        self._set: set[str] = set()
+        self._has_waste = False
 
     def add(self, subject: str, problem: str, remedy: str, *, stops: bool = True) -> None:
         """Note a problem, or another line with the same."""
@@ -157,6 +166,23 @@ class _Check:
                 stops=False,
             )
 
+    def read_setting(self, operation: str, words: list[str]) -> None:
+        """Check an operation of a machine's own that sets it."""
+        self._set.add(operation)
+        numbers = self._machine.stitch_number
+        if operation not in ("x-stitch-number", "x-xfer-stitch-number") or not words:
+            return
+        try:
+            number = float(int(words[0], 36) if words[0].isalpha() else float(words[0]))
+        except ValueError:
+            number = math.nan
+        if not numbers.least <= number <= numbers.most:
+            self.add(
+                "settings",
+                f"there is no stitch number {words[0][:20]}.",
+                f"Give one of {numbers.least:g} to {numbers.most:g}.",
+            )
+
     def read(self, operation: str, words: list[str]) -> None:
         """Carry out an operation."""
         if operation in _IN:
@@ -173,6 +199,7 @@ class _Check:
                 self._transfer(*words)
             elif words:
                 self._came_from.pop(words[0], None)
+                self._loops.pop(words[0], None)
 
     def end(self) -> None:
         """Check what only the whole program shows."""
@@ -184,6 +211,18 @@ class _Check:
         machine = self._machine
         if self._span is None:
             return
+        for operation, setting in (
+            ("x-stitch-number", machine.stitch_number.transfer),
+            ("x-roller-advance", machine.roller_advance),
+        ):
+            if setting is not None and operation not in self._set:
+                self.line = 1
+                self.add(
+                    "settings",
+                    f"{operation} is not set: the machine takes what was set last.",
+                    "Set it at the beginning.",
+                    stops=False,
+                )
         least, most = self._span
         self.line = self._span_line
         if self._keeps and (least < 1 or most > machine.needles):
@@ -212,10 +251,20 @@ class _Check:
                 if name in self._in:
                     self.add("carriers", f"carrier {name} is in already.", "Take it out first.")
                 self._in[name] = True
+                if operation == "inhook" and self._hooked:
+                    self.add(
+                        "carriers",
+                        f"the hook still holds carrier {self._hooked}: the yarns tangle.",
+                        f"Knit with it and write releasehook {self._hooked} first.",
+                    )
+                self._hooked = name if operation == "inhook" else self._hooked
             elif name not in self._in:
                 self._absent(name)
-            elif operation != "releasehook":
+            elif operation == "releasehook":
+                self._hooked = ""
+            else:
                 del self._in[name]
+                self._hooked = "" if name == self._hooked else self._hooked
 
     def _unknown(self, name: str) -> None:
         most = self._machine.carriers.count
@@ -274,6 +323,10 @@ class _Check:
             return
         if operation != "miss":
             self._came_from.pop(words[1], None)
+        if operation == "split":
+            self._split(words[1], words[2])
+        elif operation != "miss":
+            self._pile(words[1], 1 if names else 0, keeps=operation == "tuck")
         if not names:
             self._pass = _Pass()
             return
@@ -295,6 +348,15 @@ class _Check:
         self._in[name] = False
         park = self._machine.carriers
         outwards = "-" if park.parking == "left" else "+"
+        if park.waste is not None and name == str(park.waste):
+            self._has_waste = True
+        elif park.waste is not None and not self._has_waste:
+            self.add(
+                "carriers",
+                f"carrier {name} knits before the waste yarn, and nothing holds its end.",
+                f"Knit waste yarn first, with carrier {park.waste}.",
+                stops=False,
+            )
         if not park.hooks and way == outwards:
             towards = "right" if outwards == "-" else "left"
             self.add(
@@ -334,7 +396,30 @@ class _Check:
             now.stitched = slot
         now.slot = slot
 
+    def _split(self, here: str, there: str) -> None:
+        if self._loops[there]:
+            self.add(
+                "transfers",
+                "a split moves a loop onto another one.",
+                "Split onto an empty needle.",
+                stops=False,
+            )
+        self._pile(there, self._loops[here], keeps=True)
+        self._pile(here, 1, keeps=False)
+
+    def _pile(self, needle: str, more: int, *, keeps: bool) -> None:
+        """Put loops onto a needle."""
+        self._loops[needle] = more + (self._loops[needle] if keeps else 0)
+        if self._loops[needle] > MOST_LOOPS:
+            self.add(
+                "transfers",
+                f"a needle holds more than {MOST_LOOPS} loops.",
+                "Knit it before more loops are put onto it.",
+                stops=False,
+            )
+
     def _transfer(self, here: str, there: str) -> None:
+        self._pile(there, self._loops.pop(here, 0), keeps=True)
         if self._rack % 1:
             self.add(
                 "racking",

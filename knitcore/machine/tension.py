@@ -24,7 +24,7 @@ machine's profile may give gap and take-down, and :class:`LoopYarn` the yarn's s
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import lru_cache
 from itertools import pairwise
@@ -366,6 +366,7 @@ class PassTension:
     rack : in needles.
     transfers : loops that it moves.
     tightest : None if no loop is pulled.
+    pulls : on its loops.
     """
 
     number: int
@@ -373,17 +374,26 @@ class PassTension:
     rack: float
     transfers: int
     tightest: LoopTension | None
+    pulls: frozenset[PulledLink] = field(default=frozenset(), repr=False, compare=False)
 
     def to_dict(self) -> dict[str, Any]:
         """Collect the figures by name."""
         tightest = self.tightest and self.tightest.to_dict()
-        return {**vars(self), "tightest": tightest}
+        figures = {name: value for name, value in vars(self).items() if name != "pulls"}
+        return {**figures, "tightest": tightest}
 
 
 def pass_tensions(program: str, yarn: LoopYarn, machine: MachineProfile) -> tuple[PassTension, ...]:
     """The passes of a program that transfer, each with its tightest loop."""
     return tuple(
-        PassTension(number, step.line, step.rack, step.loops, _tightest(step.pulls, yarn, machine))
+        PassTension(
+            number,
+            step.line,
+            step.rack,
+            step.loops,
+            _tightest(step.pulls, yarn, machine),
+            step.pulls,
+        )
         for number, step in enumerate(read_passes(program).passes, 1)
         if step.kind == "transfer"
     )
@@ -401,12 +411,16 @@ def tightest_of(passes: Sequence[PassTension]) -> PassTension | None:
 
 def plan_tension(plan: TransferPlan, yarn: LoopYarn, machine: MachineProfile) -> LoopTension | None:
     """The tightest loop of a plan; None if no loop is pulled."""
+    return _tightest(_plan_pulls(plan), yarn, machine)
+
+
+def _plan_pulls(plan: TransferPlan) -> frozenset[PulledLink]:
     starts = [move.start.number for move in plan.moves]
     laid = [abs(b - a) for a, b in pairwise(starts)]
     racks = [step.rack for step in plan.passes]
     states = [*zip(plan.places, racks, strict=False), *zip(plan.places[1:], racks, strict=True)]
     pulls = (pulls_of(places, laid, rack) for places, rack in [*states, (plan.places[-1], 0)])
-    return _tightest(frozenset[PulledLink]().union(*pulls), yarn, machine)
+    return frozenset[PulledLink]().union(*pulls)
 
 
 @dataclass(frozen=True)
@@ -449,16 +463,33 @@ def plan_safely(moves: Sequence[LoopMove], yarn: LoopYarn, machine: MachineProfi
             staged = f"Staged in {passes} passes instead of {fewest} to spare the yarn."
             return replace(safe, note=staged if passes > fewest else "")
     best = min(plans, key=lambda of: of.tightest.break_chance if of.tightest else 0.0)
-    if best.tightest is not None and best.tightest.verdict is Verdict.BREAKS:
-        enough = _loop_that_stands(best.plan, yarn, machine)
-        raise InputError(
-            "transfers",
-            f"tightest loop: {best.tightest}; the yarn holds about "
-            f"{LOOP_EFFICIENCY * yarn.breaking_force_n:.2g} N in a loop.",
-            f"Knit the row before with loops of {enough:.1f} mm instead of "
-            f"{yarn.loop_length_mm:.1f} mm, or shift fewer stitches at once.",
-        )
+    pulls = _plan_pulls(best.plan)
+    if (refusal := _refusal(best.tightest, pulls, yarn, machine)) is not None:
+        raise refusal
     return replace(best, note="Slow this transfer down and watch it: the yarn may break.")
+
+
+def breaking(step: PassTension, yarn: LoopYarn, machine: MachineProfile) -> InputError | None:
+    """The refusal of a pass that would break the yarn; None if it may be made."""
+    return _refusal(step.tightest, step.pulls, yarn, machine)
+
+
+def _refusal(
+    tightest: LoopTension | None,
+    pulls: frozenset[PulledLink],
+    yarn: LoopYarn,
+    machine: MachineProfile,
+) -> InputError | None:
+    if tightest is None or tightest.verdict is not Verdict.BREAKS:
+        return None
+    enough = _loop_that_stands(pulls, yarn, machine)
+    return InputError(
+        "transfers",
+        f"tightest loop: {tightest}; the yarn holds about "
+        f"{LOOP_EFFICIENCY * yarn.breaking_force_n:.2g} N in a loop.",
+        f"Knit with loops of {enough:.1f} mm instead of {yarn.loop_length_mm:.1f} mm (a larger "
+        "stitch number), take a stronger yarn, or a machine with needles closer together.",
+    )
 
 
 def _plans(moves: Sequence[LoopMove], machine: MachineProfile) -> list[TransferPlan]:
@@ -483,12 +514,13 @@ def _plans(moves: Sequence[LoopMove], machine: MachineProfile) -> list[TransferP
     return plans
 
 
-def _loop_that_stands(plan: TransferPlan, yarn: LoopYarn, machine: MachineProfile) -> float:
+def _loop_that_stands(
+    pulls: frozenset[PulledLink], yarn: LoopYarn, machine: MachineProfile
+) -> float:
     length = yarn.loop_length_mm
     for _ in range(20):
         length *= 1.05
-        longer = replace(yarn, loop_length_mm=length)
-        tightest = plan_tension(plan, longer, machine)
+        tightest = _tightest(pulls, replace(yarn, loop_length_mm=length), machine)
         if tightest is None or tightest.break_chance < BREAK_RISK:
             break
     return length

@@ -7,11 +7,13 @@ from knitcore.chart.stitch_chart import check_stitches
 from knitcore.formats.designs.layout import DesignLayout, piece_of
 from knitcore.formats.write.sheets.knit_along import knit_along as worked_out
 from knitcore.machine.profile import machine_of
+from knitcore.machine.setting import setting_of
 
 from ...context import Context
 from ...requests.base import RequestModel, ResultModel
-from ...requests.charts import ChartInput, to_chart
+from ...requests.charts import ChartInput, MaterialName, to_chart
 from ..registry import Command, Operation
+from .machines import machine_text
 
 MAX_STITCHES = 250_000
 """Largest chart over REST."""
@@ -26,6 +28,9 @@ class KnitAlongRequest(DesignLayout, RequestModel):
     )
     first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting by hand.")
     from_row: int = Field(1, ge=1, description="The first row, after a break or a jam.")
+    material: MaterialName | None = Field(
+        None, description="Material of the yarn, for the stitch number of a machine."
+    )
 
 
 class AlongRowResult(ResultModel):
@@ -77,15 +82,25 @@ def knit_along(request: KnitAlongRequest, context: Context) -> KnitAlongResult:
     chart = to_chart(request.chart)
     if not context.local:
         check_stitches(chart.stitches, MAX_STITCHES, instead=", or the command line")
-    return KnitAlongResult.of(
-        worked_out(
-            piece_of(chart, request),
-            request.construction,
-            first_side=request.first_side,
-            machine=None if request.machine is None else machine_of(request.machine),
-            from_row=request.from_row,
-        )
+    piece = piece_of(chart, request)
+    machine = None if request.machine is None else machine_of(request.machine)
+    rows = worked_out(
+        piece,
+        request.construction,
+        first_side=request.first_side,
+        machine=machine,
+        from_row=request.from_row,
     )
+    notes = list(rows.notes)
+    if machine is not None and request.material is not None:
+        notes.insert(0, setting_of(piece, machine, context.material(request.material)).note)
+    return KnitAlongResult.of(rows, notes=notes)
+
+
+def _command(request: KnitAlongRequest, context: Context) -> KnitAlongResult:
+    if request.machine is not None:
+        request = request.model_copy(update={"machine": machine_text(request.machine)})
+    return knit_along(request, context)
 
 
 def _lines(result: KnitAlongResult) -> list[str]:
@@ -94,7 +109,7 @@ def _lines(result: KnitAlongResult) -> list[str]:
     for row in result.rows:
         heading = f" ({row.heading})" if row.heading else ""
         rows.append(f"{name} {row.number}{heading}: {' '.join(row.words)}")
-    return [*result.opening, *rows, *result.closing]
+    return [*result.opening, *rows, *result.closing, *result.notes]
 
 
 OPERATION = Operation(
@@ -104,5 +119,10 @@ OPERATION = Operation(
     path="/knit-along",
     example={"chart": "KP\nPK"},
     most_stitches=MAX_STITCHES,
-    command=Command(_lines, names={"regions": None, "repeats": None, "shelf": None}),
+    command=Command(
+        _lines,
+        more="--machine takes a name of `knitcore machines`, or the file of a profile of your own.",
+        names={"regions": None, "repeats": None, "shelf": None},
+        run=_command,
+    ),
 )

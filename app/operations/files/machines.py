@@ -161,6 +161,8 @@ def _in_words(value: object) -> str:
     if isinstance(value, dict):
         parts = (f"{name} {_in_words(part)}" for name, part in value.items() if part is not None)
         return ", ".join(parts)
+    if isinstance(value, tuple):
+        return "; ".join(map(_in_words, value)) or "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
     return "–" if value is None else str(value)

@@ -1,18 +1,21 @@
-"""The figures of a program before it is knitted: passes, tightest loop, minutes, yarn, cost."""
+"""The figures of a piece on a machine: passes, tightest loop, minutes, yarn, cost."""
 
+from dataclasses import replace
 from typing import Annotated
 
 from pydantic import Field
 
+from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.formats.designs.layout import DesignLayout, piece_of
-from knitcore.garment.piece import Piece
-from knitcore.garment.regions import yarn_use
-from knitcore.machine.duration import CarrierYarn, ProgramReport, program_report
+from knitcore.machine.duration import CarrierYarn, hand_report, program_report
+from knitcore.machine.home.hand_plan import hand_plan
+from knitcore.machine.home.plan_rows import minutes_in_words
 from knitcore.machine.profile import machine_of
 from knitcore.machine.program import Finish, knitout_program
-from knitcore.machine.tension import LoopYarn, Verdict
-from knitcore.materials import Material
+from knitcore.machine.setting import setting_of
+from knitcore.machine.tension import Verdict
+from knitcore.materials.yarn_per_stitch import MeasuredYarn
 
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
@@ -32,6 +35,10 @@ class ProgramReportRequest(DesignLayout, Gauged, LawsRequest):
     chart: ChartInput
     material: MaterialName = Field("acrylic", description="Material of the yarn.")
     finish: Finish = Field(Finish.WASTE, description="The end of the program.")
+    stitch_number: float | None = Field(
+        None, ge=0, le=10_000, description="That of the yarn's loops if left out."
+    )
+    from_row: int = Field(1, ge=1, description="The first row, after a break or a jam.")
     loop_length_mm: float | None = Field(
         None, gt=0, le=100, description="Yarn of a stitch; the material's if left out."
     )
@@ -75,11 +82,12 @@ class ProgramReportResult(IntervalResult):
     """The figures of a program on a machine."""
 
     machine: str
+    stitch_number: float
     passes: int
     knit_passes: int
     transfer_passes: int
     empty_passes: int = Field(description="Passes that only bring the carriage back.")
-    transfers: int
+    transfers: int = Field(description="Loops; by hand also those that are latched up.")
     rackings: int
     minutes: float = Field(description="Without stops.")
     cost: float | None = Field(description="Of yarn and machine, if a price was given.")
@@ -89,43 +97,53 @@ class ProgramReportResult(IntervalResult):
 
 
 def program(request: ProgramReportRequest, context: Context) -> ProgramReportResult:
-    """Passes, minutes, metres and grams of a chart's program, and the tension of its transfers.
+    """Passes, minutes, metres and grams of a chart on a machine, and the tension of transfers.
 
     Raises
     ------
     InputError
-        If the machine cannot knit the chart from a program.
+        If the machine cannot knit the chart, or its transfers would break the yarn.
     """
-    report = _reported(request, context)
-    return ProgramReportResult.of(
-        report, interval_source=f"Tension: {report.tension_source}.", notes=[report.time_note]
-    )
-
-
-def _reported(request: ProgramReportRequest, context: Context) -> ProgramReport:
     chart = to_chart(request.chart)
     check_stitches(chart.stitches, MAX_STITCHES, instead=" for a program")
-    piece, material = piece_of(chart, request), context.material(request.material)
-    machine = machine_of(request.machine)
-    knitted = knitout_program(piece, finish=request.finish, machine=machine)
-    yarn = LoopYarn.of(
-        material,
-        loop_length_mm=request.loop_length_mm or _loop_length_mm(piece, material, request),
-        linear_density_tex=request.linear_density_tex,
-    )
-    return program_report(
-        knitted.text,
+    material, machine = context.material(request.material), machine_of(request.machine)
+    piece = replace(piece_of(chart, request), gauge=request.relaxed_size)
+    piece = piece.from_row(request.from_row)
+    mm = request.loop_length_mm
+    setting = setting_of(
+        piece,
         machine,
-        yarn,
-        price_per_kg=request.price_per_kg,
-        price_per_hour=request.price_per_hour,
+        material,
+        stitch_number=request.stitch_number,
+        linear_density_tex=request.linear_density_tex,
+        measured=None if mm is None else MeasuredYarn(mm),
     )
-
-
-def _loop_length_mm(piece: Piece, material: Material, request: ProgramReportRequest) -> float:
-    """Mean yarn of the piece's stitches."""
-    use = yarn_use(piece.shaped, material, size=request.relaxed_size)
-    return 1000 * use.length_m / int(piece.shaped.stitch.sum())
+    if setting.yarn is None:
+        raise InputError(
+            "material",
+            f"{material.identifier} has no loop length, or no linear density.",
+            "Give yarn per stitch in mm, and tex.",
+        )
+    prices = request.price_per_kg, request.price_per_hour
+    notes = [setting.note]
+    if machine.reads_programs:
+        knitted = knitout_program(
+            piece,
+            finish=request.finish,
+            machine=machine,
+            stitch_number=setting.number,
+            yarn=setting.yarn,
+        )
+        report = program_report(knitted.text, machine, setting.yarn, *prices)
+        notes += [knitted.spared] if knitted.spared else []
+    else:
+        report = hand_report(hand_plan(piece, machine), piece, machine, setting.yarn, *prices)
+    return ProgramReportResult.of(
+        report,
+        stitch_number=setting.number,
+        interval_source=f"Tension: {report.tension_source}.",
+        notes=[*notes, report.time_note],
+    )
 
 
 def _command(request: ProgramReportRequest, context: Context) -> ProgramReportResult:
@@ -135,12 +153,17 @@ def _command(request: ProgramReportRequest, context: Context) -> ProgramReportRe
 
 
 def _lines(result: ProgramReportResult) -> list[str]:
-    passes = (
-        f"{result.passes} passes: {result.knit_passes} knit, {result.transfer_passes} transfer "
-        f"{result.transfers} loops, {result.empty_passes} bring the carriage back; "
-        f"{result.rackings} rackings"
-    )
-    lines = [f"machine  {result.machine}", f"time     {result.minutes:.0f} min", passes]
+    passes = f"{result.passes} passes"
+    if result.transfer_passes:
+        passes += f": {result.knit_passes} knit, {result.transfer_passes} transfer"
+    if result.transfers:
+        passes += f"; {result.transfers} loops transferred"
+    if result.empty_passes:
+        passes += f"; {result.empty_passes} passes bring the carriage back"
+    if result.rackings:
+        passes += f"; {result.rackings} rackings"
+    lines = [f"machine  {result.machine}", f"time     {minutes_in_words(result.minutes)}", passes]
+    lines += result.notes
     lines += [f"carrier {y.carrier}  {y.length_m:.1f} m, {y.mass_g:.1f} g" for y in result.yarns]
     if result.cost is not None:
         lines.append(f"cost     {result.cost:.2f}")
@@ -160,7 +183,7 @@ OPERATION = Operation(
     program,
     tag="files",
     path="/program-report",
-    summary="Passes, tightest loop, minutes and yarn of a machine's program",
+    summary="Passes, tightest loop, minutes and yarn of a chart on a machine",
     most_stitches=MAX_STITCHES,
     example={"chart": {"fabric": "garter", "columns": 6, "rows": 4}, "material": "lace-acrylic"},
     heavy=True,

@@ -11,8 +11,11 @@ from ..designs.document import (
     DesignDocument,
     DesignPage,
     DesignPatch,
+    KnittingPlace,
+    KnittingPlaces,
     NewShare,
     Painted,
+    PlaceRequest,
     SharedDesign,
     ShareRequest,
     Shares,
@@ -23,6 +26,7 @@ from ..designs.document import (
     VersionSummary,
 )
 from ..designs.parameters import MISSING, Cursor, DesignId, Limit, Owner, Responses, RetryOf
+from ..designs.places import Places
 from ..designs.sharing import Sharing
 from ..designs.store import DesignStore
 from ..designs.watching import PERIOD_S, QUIET_S
@@ -56,8 +60,20 @@ async def _sharing(request: Request) -> Sharing:
     return Sharing(request.app.state.database)
 
 
+async def _places(request: Request) -> Places:
+    return Places(request.app.state.database)
+
+
 Store = Annotated[DesignStore, Depends(_store)]
 Links = Annotated[Sharing, Depends(_sharing)]
+KnittedTo = Annotated[Places, Depends(_places)]
+Way = Annotated[
+    str,
+    Path(
+        pattern=r"^[a-z0-9][a-z0-9-]{0,39}$",
+        description="`flat`, `round`, or the identifier of a machine.",
+    ),
+]
 
 
 def _tagged(response: Response, design: Design) -> Design:
@@ -239,6 +255,20 @@ def post_restore(
 ) -> Design:
     """Restore a version. The present state is saved as a version first."""
     return _tagged(response, store.restore(owner, design, number, if_match))
+
+
+@router.get("/designs/{design}/places", summary="Your places in knitting a design")
+def get_places(design: DesignId, places: KnittedTo, owner: Owner) -> KnittingPlaces:
+    """List the places, one for each way to knit it. Undo and versions leave them as they are."""
+    return places.all(owner, design)
+
+
+@router.put("/designs/{design}/places/{way}", summary="Keep your place in knitting a design")
+def put_place(
+    design: DesignId, way: Way, body: PlaceRequest, places: KnittedTo, owner: Owner
+) -> KnittingPlace:
+    """Keep the row at hand, so that another device goes on there."""
+    return places.keep(owner, design, way, body)
 
 
 @router.get("/designs/{design}/shares", summary="Links to a design")

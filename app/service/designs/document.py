@@ -145,6 +145,28 @@ class Versions(BaseModel):
     versions: list[VersionSummary]
 
 
+class PlaceRequest(RequestModel):
+    """Where somebody is in knitting a design."""
+
+    row: int = Field(ge=0, le=100_000, description="Row at hand; 0 before the first.")
+    count: int = Field(0, ge=0, le=1_000_000, description="A counter of the knitter's own.")
+
+
+class KnittingPlace(BaseModel):
+    """A place that is kept."""
+
+    way: str = Field(description="`flat`, `round`, or the identifier of a machine.")
+    row: int
+    count: int
+    changed_at: AwareDatetime
+
+
+class KnittingPlaces(BaseModel):
+    """The places in a design, the latest first."""
+
+    places: list[KnittingPlace]
+
+
 class ShareMode(StrEnum):
     """Rights that a link gives."""
 

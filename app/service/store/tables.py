@@ -69,6 +69,16 @@ design_versions = Table(
     Index(None, "design_id", "size_bytes"),
 )
 
+knitting_places = Table(
+    "knitting_places",
+    metadata,
+    Column("design_id", ForeignKey("designs.id", ondelete="CASCADE"), primary_key=True),
+    Column("way", String(40), primary_key=True),  # flat, round, or a machine's identifier
+    Column("row", Integer, nullable=False),
+    Column("count", Integer, nullable=False),
+    Column("changed_at", Float, nullable=False),
+)
+
 shares = Table(
     "shares",
     metadata,

@@ -83,6 +83,7 @@ PARAMETERS = {
     "session": "3b1AieUVX6zNqeUh",
     "share": "3b1AieUVX6zNqeUh",
     "token": "LV39s7v8rGNtEW5HW9Xl9Q",
+    "way": "flat",
 }
 """Examples of what stands in addresses."""
 HAVE_STATES = frozenset({"Design", "Painted"})

@@ -1,14 +1,16 @@
 /**
  * Knit along: the row at hand large, in words and as it hangs on the needles, to be read at arm's length.
  *
+ * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../state/studio.js"
  * @import {KnitAlongResult} from "../../types.js"
  */
 
-import { loadPlace, loadSettings, savePlace, saveSettings } from "../../design/store.js";
+import { loadSettings, saveSettings } from "../../design/store.js";
 import { h } from "../../elements/dom.js";
-import { WAYS, alongRequest, alongRows, repeatWords, stepOf } from "../../services/along.js";
+import { Places, alongRequest, alongRows, repeatWords, resume, stepOf, waysOf } from "../../services/along.js";
 import { Awake } from "../../services/awake.js";
+import { knownMachines } from "../../services/machines.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { numberField } from "../../widgets/fields.js";
@@ -21,13 +23,23 @@ const SWIPE = 48;
 /** @param {string} text */
 const capital = (text) => text.replace(/^(\W*)(\w)/, (_, before, letter) => before + letter.toUpperCase());
 
-/** @param {Studio} studio */
-export function create(studio) {
+/** Where the place is kept, in words. */
+const KEPT = {
+  design: "Your place is kept with the design: another device goes on here.",
+  browser: "Your place is kept in this browser.",
+  nowhere: "This browser keeps nothing: note the row before you close the page.",
+};
+
+/** @param {Studio} studio @param {ActionContext} context */
+export function create(studio, { keeper, open }) {
   /** @type {KnitAlongResult | null} */
   let along = null;
   let way = loadSettings({ along: studio.editing.round.value ? "round" : "flat" }).along;
   let place = { row: 0, count: 0 };
-  let isKept = true;
+  const places = new Places(
+    () => keeper.remoteId,
+    (where) => (kept.textContent = KEPT[where]),
+  );
   const awake = new Awake();
 
   const ways = h(
@@ -38,10 +50,10 @@ export function create(studio) {
       onchange: () => {
         way = ways.value;
         saveSettings({ along: way });
-        void load();
+        void load().then(() => along && go(place.row)); // this is the way of the piece from now on
       },
     },
-    ...Object.entries(WAYS).map(([value, words]) => h("option", { value }, words)),
+    h("option", { value: way }, way),
   );
   const number = numberField({
     min: "1",
@@ -83,7 +95,13 @@ export function create(studio) {
     iconButton("plus", "Count up", () => tally(place.count + 1)),
     textButton(null, "Set to 0", () => tally(0), { class: "button quiet" }),
   );
-  const reading = h("div", { class: "along-main" }, row, picture, next, counter, kept);
+  const files = h(
+    "div",
+    { class: "line wrap gap-8" },
+    textButton("export", "File from this row", fromHere, { class: "button quiet", id: "along-file" }),
+    textButton("copy", "Print all rows", print, { class: "button quiet" }),
+  );
+  const reading = h("div", { class: "along-main" }, row, picture, next, counter, kept, files);
   const paper = h("div", { class: "along-paper" });
   const element = dialog(
     "along-dialog",
@@ -93,7 +111,6 @@ export function create(studio) {
       { class: "along-tools line wrap gap-8" },
       ways,
       h("label", { class: "line gap-5 nowrap" }, "Go to row", number),
-      textButton(null, "Print", print, { class: "button quiet" }),
     ),
     bar,
     status,
@@ -108,7 +125,7 @@ export function create(studio) {
   /** @param {number} to 0 before the first row, one more than the rows after the last */
   function go(to) {
     place = { ...place, row: Math.min(Math.max(to, 0), last()) };
-    isKept = savePlace(piece(), place);
+    places.save(piece(), way, place);
     show();
   }
 
@@ -118,7 +135,7 @@ export function create(studio) {
   /** @param {number} to */
   function tally(to) {
     place = { ...place, count: Math.max(to, 0) };
-    isKept = savePlace(piece(), place);
+    places.save(piece(), way, place);
     count.value = String(place.count);
   }
 
@@ -129,12 +146,37 @@ export function create(studio) {
     const rows = await attempt(status, () => alongRows(alongRequest(studio, way)), load);
     if (chosen !== piece()) return; // another way was chosen meanwhile
     along = rows;
-    place = loadPlace(piece());
-    place.row = Math.min(place.row, last()); // the design may have lost rows since
-    count.value = String(place.count);
+    await look();
     forth.disabled = back.disabled = !along;
     reading.hidden = !along;
     if (along) show();
+  }
+
+  /** Go to where the piece is by now: another device may have gone on. */
+  async function look() {
+    const chosen = piece();
+    const latest = await places.load(chosen, way);
+    if (chosen !== piece()) return;
+    place = { ...latest, row: Math.min(latest.row, last()) }; // the design may have lost rows since
+    count.value = String(place.count);
+    show();
+  }
+
+  /** A program or a plan that begins with the row at hand. */
+  function fromHere() {
+    resume.row = Math.min(Math.max(place.row, 1), along?.rows.length ?? 1);
+    element.close();
+    open("exports");
+  }
+
+  async function offerWays() {
+    const machines = (await attempt(status, knownMachines, offerWays)) ?? [];
+    const words = waysOf(machines, studio.machine.value);
+    const latest = await places.lastWay();
+    if (latest in words) way = latest;
+    if (!(way in words)) way = "flat";
+    ways.replaceChildren(...Object.entries(words).map(([value, name]) => h("option", { value }, name)));
+    await load();
   }
 
   function show() {
@@ -174,9 +216,6 @@ export function create(studio) {
     if (focused === forth && forth.disabled) back.focus(); // keys go on being heard
     if (focused === back && back.disabled) forth.focus();
     forth.textContent = then ? `${name} ${then.number}` : "Finish";
-    kept.textContent = isKept
-      ? "Your place is kept in this browser, not on other devices."
-      : "This browser keeps nothing: note the row before you close the page.";
   }
 
   /** @param {KnitAlongResult["rows"][number]} worked */
@@ -225,12 +264,15 @@ export function create(studio) {
     if (Math.abs(across) > SWIPE && Math.abs(across) > 2 * Math.abs(up)) step(across < 0 ? 1 : -1);
   });
   element.addEventListener("close", () => void awake.release());
+  document.addEventListener("visibilitychange", () => {
+    if (along && element.open && document.visibilityState === "visible") void look();
+  });
   new ResizeObserver(() => show()).observe(element);
 
   return () => {
     element.showModal();
     forth.focus();
-    void load();
+    void offerWays();
     void awake.keep().then((on) => {
       element.dataset.awake = String(on);
     });

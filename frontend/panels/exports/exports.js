@@ -11,16 +11,18 @@ import { ApiError, api, fetched } from "../../api.js";
 import { base64 } from "../../grid/bits.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
-import { HOME_MACHINES } from "../../services/along.js";
+import { resume } from "../../services/along.js";
 import { download } from "../../services/exporter.js";
+import { knownMachines } from "../../services/machines.js";
 import { pieceOf } from "../../services/scope.js";
 import { dialog } from "../../widgets/dialog.js";
-import { choice, labelled, numberField, selectField } from "../../widgets/fields.js";
+import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { isKnitted, viewPicture } from "../fabric/share.js";
 import { viewRequest } from "../fabric/fabricview.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { machineField } from "./machines.js";
 import { reportTable } from "./programreport.js";
+import { swatchFields } from "./swatches.js";
 import { textButton } from "../../widgets/buttons.js";
 import { attempt } from "../../widgets/problem.js";
 
@@ -46,7 +48,13 @@ const PHOTO_PX = { width: 1400, height: 800 };
 export function create(studio, { view }) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
-  const machine = machineField(studio);
+  const machine = machineField(studio, () => void swatches.show());
+  const swatches = swatchFields(studio, () => machine.value);
+  const stitch = numberField({ min: "0", step: "any", placeholder: "–", "aria-label": "Stitch number" });
+  /** @param {string} label */
+  const price = (label) => numberField({ min: "0", step: "any", placeholder: "–", "aria-label": label });
+  const perKg = price("Price of a kilogram of yarn");
+  const perHour = price("Price of an hour at the machine");
   const tex = numberField({ min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
   const sides = choice(
     "export-side",
@@ -55,7 +63,6 @@ export function create(studio, { view }) {
     "RS",
     (value) => (chosen.first_side = value),
   );
-  const home = selectField({ class: "text" }, HOME_MACHINES);
   const from = numberField({ min: "1", step: "1", value: "1", "aria-label": "From row" });
   const note = h("p", { class: "muted" });
   /** @type {Record<Option, HTMLElement>} */
@@ -69,6 +76,13 @@ export function create(studio, { view }) {
       }),
       sides,
     ),
+    machine: machine.element,
+    dial: h(
+      "div",
+      { class: "stack gap-8" },
+      labelled("Stitch number", stitch, "that of the yarn's loops if left empty"),
+      swatches.element,
+    ),
     finish: choice(
       "export-finish",
       "The last row",
@@ -76,10 +90,9 @@ export function create(studio, { view }) {
       "waste",
       (value) => (chosen.finish = value),
     ),
-    machine: machine.element,
-    home: h("label", { class: "line gap-8" }, "Machine", home),
     from: labelled("From row", from, "to go on after a break or a jam"),
     tex: labelled("Yarn, tex (g/km)", tex, "for its mass"),
+    price: h("div", { class: "line gap-8" }, "Price of yarn, per kg", perKg, "per hour", perHour),
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });
@@ -91,6 +104,7 @@ export function create(studio, { view }) {
     kind = format;
     for (const [name, row] of Object.entries(options))
       row.hidden = !format.options.includes(/** @type {Option} */ (name));
+    if (format.options.includes("machine")) machine.showFor(format.to === "knitout" ? "programs" : "plans");
     outcome.replaceChildren();
     status.replaceChildren();
   };
@@ -148,7 +162,7 @@ export function create(studio, { view }) {
     const added = ofExtensions(offered.extensions).map(entry);
     entries.push(...added);
     formats.append(...fieldsets(added));
-    machine.offer((await attempt(status, api.machines, askOffered))?.machines ?? []);
+    machine.offer((await attempt(status, knownMachines, askOffered)) ?? []);
     showHindrances();
   }
 
@@ -181,7 +195,9 @@ export function create(studio, { view }) {
       gauge: pieceOf(studio).gauge,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       photo: isPattern(kind.to) ? await photo() : null,
-      ...(kind.options.includes("home") && { machine: home.value }),
+      ...(kind.options.includes("machine") && { machine: machine.value }),
+      stitch_number:
+        kind.options.includes("dial") && Number.isFinite(stitch.valueAsNumber) ? stitch.valueAsNumber : null,
       from_row: kind.options.includes("from") && Number.isInteger(from.valueAsNumber) ? from.valueAsNumber : 1,
     };
     const bare = isPattern(kind.to) && body.photo === null;
@@ -191,13 +207,16 @@ export function create(studio, { view }) {
     const notes = bare ? ["without a picture: none could be made"] : [];
     if (!file) return;
     show({ ...file, notes: [...file.notes, ...notes] }, format);
-    if (format.to === "knitout") await explain(/** @type {ExportRequest} */ (body));
+    if (format.options.includes("price")) await explain(/** @type {ExportRequest} */ (body));
   }
 
   /** Time, yarn and tension of a program, below the file. @param {Partial<ExportRequest>} request of the file */
   async function explain(request) {
-    const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex } = request;
-    const body = { chart, outline, regions, material, machine, finish, gauge, linear_density_tex };
+    const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number, from_row } =
+      request;
+    const design = { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number };
+    const [price_per_kg, price_per_hour] = [perKg, perHour].map(({ valueAsNumber: n }) => (n > 0 ? n : null));
+    const body = { ...design, from_row, price_per_kg, price_per_hour };
     const report = await attempt(status, () => api.run("program-report", /** @type {ProgramReportRequest} */ (body)));
     if (report) outcome.children[0]?.after(reportTable(report));
   }
@@ -265,7 +284,8 @@ export function create(studio, { view }) {
     ]
       .filter(Boolean)
       .join(" ");
-    machine.show();
+    from.value = String(resume.row);
+    resume.row = 1;
     choose(kind);
     element.showModal();
     if (!offered) void askOffered();

@@ -3,7 +3,7 @@
  *
  * @import {Extensions} from "../../types.js"
  *
- * @typedef {"worked" | "finish" | "machine" | "home" | "from" | "note" | "tex"} Option
+ * @typedef {"worked" | "finish" | "machine" | "dial" | "from" | "note" | "tex" | "price"} Option
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
@@ -39,7 +39,7 @@ export function ofExtensions(extensions) {
 const PAPER = ["worked", "note", "tex"];
 
 /** What can be said about a plan for a home machine. @type {Option[]} */
-const HOME = ["home", "from"];
+const HOME = ["machine", "dial", "from", "tex", "price"];
 
 /**
  * A group's formats: each by its name for the service, name and note on the page, options, and whether
@@ -71,16 +71,16 @@ export const KINDS = [
       "knitout",
       "Knitout",
       "for your machine; knitted on a virtual one first",
-      ["machine", "finish", "from", "tex"],
+      ["machine", "dial", "finish", "from", "tex", "price"],
       true,
     ],
   ]),
   ...kinds("For a home machine", [
     ["hand-plan", "Plan by the row", "PDF: what to latch up, transfer or turn, and on which needles", HOME],
     ["hand-plan-text", "The same, as text", "to be read on a phone", HOME, true],
-    ["ayab", "Picture for AYAB", "two colours of knits, or a guide for work by hand; up to 200 needles", ["home"]],
-    ["punch-card", "Punch card", "PDF at true size, 24 stitches", ["home"]],
-    ["punch-card-text", "Punch card, as text", "x for a hole", ["home"], true],
+    ["ayab", "Picture for AYAB", "two colours of knits, or a guide for work by hand; up to 200 needles", ["machine"]],
+    ["punch-card", "Punch card", "PDF at true size, 24 stitches", ["machine"]],
+    ["punch-card-text", "Punch card, as text", "x for a hole", ["machine"], true],
   ]),
   ...kinds("Data and files", [
     ["report", "Report", "PDF: numbers with intervals, maps, curves, assumptions, chart", PAPER],

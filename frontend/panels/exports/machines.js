@@ -1,52 +1,20 @@
 /**
- * The choice of the machine that a program is for: one that the service knows, or a profile of the
- * user's own. It is kept with the design.
+ * The choice of the machine that a file is for.
  *
  * @import {Studio} from "../../state/studio.js"
- * @import {Machines} from "../../types.js"
+ * @import {Machine} from "../../services/machines.js"
  */
 
 import { h } from "../../elements/dom.js";
+import { choices, isFile, isOwn } from "../../services/machines.js";
 import { labelled, selectField } from "../../widgets/fields.js";
 
-/** The machine of designs that name none. */
-export const DEFAULT = "swg091n2";
-const OWN = "own";
-const FILE = "file";
-
-/**
- * Machines to choose from, by what a design keeps of them.
- *
- * @param {Pick<Machines["machines"][number], "identifier" | "name" | "reads_programs">[]} machines
- * @param {string | null} chosen what the design keeps: a name, or the text of a profile
- * @returns {{options: Record<string, string>, value: string}}
- */
-export function choices(machines, chosen) {
-  const known = machines.filter((machine) => machine.reads_programs);
-  const value = chosen === null ? DEFAULT : isProfile(chosen) ? OWN : chosen;
-  const options = Object.fromEntries(known.map(({ identifier, name }) => [identifier, name]));
-  if (value === OWN) options[OWN] = nameOf(chosen ?? "");
-  options[value] ??= value;
-  return { options: { ...options, [FILE]: "A profile of your own …" }, value };
-}
-
-/** @param {string} text */
-const isProfile = (text) => text.trimStart().startsWith("{");
-
-/** The name in a profile. @param {string} text */
-function nameOf(text) {
-  try {
-    const { name } = JSON.parse(text);
-    return typeof name === "string" && name ? name : "Your own profile";
-  } catch {
-    return "Your own profile";
-  }
-}
-
-/** @param {Studio} studio */
-export function machineField(studio) {
-  /** @type {Machines["machines"]} */
+/** @param {Studio} studio @param {() => void} changed */
+export function machineField(studio, changed) {
+  /** @type {readonly Machine[]} */
   let machines = [];
+  /** @type {"programs" | "plans"} */
+  let use = "programs";
   const host = h("span", {});
   const file = h("input", { type: "file", accept: ".json,application/json", hidden: true });
   file.addEventListener("change", async () => {
@@ -56,22 +24,32 @@ export function machineField(studio) {
     show();
   });
   function show() {
-    const { options, value } = choices(machines, studio.machine.value);
+    const { options, value } = choices(machines, studio.machine.value, use);
     const field = selectField({ class: "text", id: "export-machine", "aria-label": "Machine" }, options);
     field.value = value;
     field.addEventListener("change", () => {
       const { value: picked } = field;
-      if (picked !== FILE) studio.machine.value = picked;
-      else file.click();
+      if (isFile(picked)) file.click();
+      else if (!isOwn(picked)) studio.machine.value = picked;
       show();
     });
     host.replaceChildren(field);
+    changed();
   }
   studio.machine.listen(show);
   return {
     element: h("div", {}, labelled("Machine", host), file),
-    show,
-    /** @param {Machines["machines"]} known */
+    /** The machine on show: its name, or the text of a profile. @returns {string} */
+    get value() {
+      const { value } = choices(machines, studio.machine.value, use);
+      return isOwn(value) ? (studio.machine.value ?? "") : value;
+    },
+    /** @param {"programs" | "plans"} wanted */
+    showFor(wanted) {
+      use = wanted;
+      show();
+    },
+    /** @param {readonly Machine[]} known */
     offer(known) {
       machines = known;
       show();

@@ -11,15 +11,30 @@ import { table, tableRow } from "../../widgets/table.js";
 /** Kinds of transfer that are shown, the tightest first. */
 const MOST_KINDS = 4;
 
+/** Minutes, and hours of them from two on. @param {number} minutes */
+function duration(minutes) {
+  const count = Math.max(1, Math.round(minutes));
+  return count < 120 ? `${count} min` : `${Math.floor(count / 60)} h ${count % 60} min`;
+}
+
 /** Rows of the table: a name and its figures. @param {ProgramReportResult} report @returns {[string, string][]} */
 export function reportRows(report) {
   const cost = report.cost === null ? "" : `, costs ${figure(report.cost)}`;
-  const empty = report.empty_passes ? `, ${report.empty_passes} to bring the carriage back` : "";
+  const kinds = [
+    report.transfer_passes ? `${report.knit_passes} knit, ${report.transfer_passes} transfer` : "",
+    report.empty_passes ? `${report.empty_passes} to bring the carriage back` : "",
+  ].filter(Boolean);
+  const passes = kinds.length ? `${report.passes}: ${kinds.join(", ")}` : String(report.passes);
+  const byHand = report.transfers && !report.transfer_passes;
   return [
-    ["Time", `${Math.max(1, Math.round(report.minutes))} min without stops${cost}`],
-    ["Passes", `${report.passes}: ${report.knit_passes} knit, ${report.transfer_passes} transfer${empty}`],
+    ["Time", `${duration(report.minutes)} without stops${cost}`],
+    ["Passes", passes],
+    ...(byHand ? [pair("By hand", `${report.transfers} stitches moved or latched up`)] : []),
     ...report.yarns.map(({ carrier, length_m, mass_g }) =>
-      pair(`Carrier ${carrier}`, `${figure(length_m)} m, about ${figure(mass_g, 2)} g`),
+      pair(
+        /^\d/.test(carrier) ? `Carrier ${carrier}` : `Yarn ${carrier}`,
+        `${figure(length_m)} m, about ${figure(mass_g, 2)} g`,
+      ),
     ),
     ...report.kinds_of_transfer
       .slice(0, MOST_KINDS)

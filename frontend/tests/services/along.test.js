@@ -3,16 +3,70 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { HOME_MACHINES, WAYS, alongRequest, alongRows, repeatWords, stepOf } from "../../services/along.js";
+import { Places, alongRequest, alongRows, repeatWords, stepOf, waysOf } from "../../services/along.js";
 
 const content = { chart: "KP", outline: null, regions: [], repeats: [], shelf: [] };
-const studio = /** @type {any} */ ({ document: { content } });
+const OWN = '{"identifier": "attic", "name": "My Passap", "dialect": "hand"}';
+const studio = /** @type {any} */ ({
+  document: { content },
+  machine: { value: OWN },
+  materialId: { value: "acrylic" },
+});
+const MACHINES = [
+  { identifier: "brother", name: "Brother", reads_programs: false },
+  { identifier: "kniterate", name: "Kniterate", reads_programs: true },
+];
 
-test("a way of knitting is a construction by hand, or a machine", () => {
+test("a way of knitting is a construction by hand, or a home machine of the service or the user's", () => {
   const { machine, construction } = alongRequest(studio, "round");
   assert.deepEqual([machine, construction], [null, "round"]);
-  for (const way of Object.keys(HOME_MACHINES)) assert.equal(alongRequest(studio, way).machine, way);
-  assert.ok(Object.keys(WAYS).length > Object.keys(HOME_MACHINES).length);
+  assert.deepEqual(Object.keys(waysOf(MACHINES, OWN)), ["flat", "round", "brother", "attic"]);
+  assert.deepEqual(Object.keys(waysOf(MACHINES, "kniterate")), ["flat", "round", "brother"]);
+  assert.equal(alongRequest(studio, "brother").machine, "brother");
+  assert.equal(alongRequest(studio, "attic").machine, OWN);
+});
+
+/** A browser's storage, and a service that answers. @param {(path: string, method: string, body: string) => unknown} answer */
+function world(answer) {
+  /** @type {Map<string, string>} */
+  const kept = new Map();
+  const storage = {
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ text) => kept.set(key, text),
+  };
+  const fetch = async (/** @type {string} */ path, /** @type {RequestInit} */ { method, body }) =>
+    new Response(JSON.stringify(answer(path, method ?? "GET", String(body))));
+  Object.assign(globalThis, { localStorage: storage, fetch });
+}
+
+test("a place is kept with the design, and in the browser while the service is away", async () => {
+  /** @type {string[]} */
+  const states = [];
+  /** @type {unknown[]} */
+  const sent = [];
+  let isAway = false;
+  world((path, method, body) => {
+    if (isAway) throw new TypeError("away");
+    if (method === "PUT") sent.push([path, JSON.parse(body)]);
+    return { places: [{ way: "brother", row: 9, count: 2 }] };
+  });
+  const settled = () => new Promise((done) => setTimeout(done));
+  const places = new Places(
+    () => "d1",
+    (state) => states.push(state),
+  );
+  assert.equal(await places.lastWay(), "brother");
+  assert.deepEqual(await places.load("d1 brother", "brother"), { row: 9, count: 2 });
+  isAway = true;
+  places.save("d1 brother", "brother", { row: 10, count: 2 });
+  await settled();
+  assert.equal(states.at(-1), "browser");
+  isAway = false;
+  assert.equal((await places.load("d1 brother", "brother")).row, 10); // what was knitted meanwhile counts
+  await settled();
+  assert.deepEqual(sent, [["/api/v1/designs/d1/places/brother", { row: 10, count: 2 }]]);
+  assert.equal(states.at(-1), "design");
+  assert.equal((await places.load("d1 brother", "brother")).row, 9); // and then what the service says
 });
 
 test("repeats of the pattern are counted", () => {

@@ -19,7 +19,7 @@ from itertools import pairwise
 from knitcore.base.errors import InputError
 from knitcore.formats.read.knitout_parts import named, stitches_of
 from knitcore.machine.knitout_machine import Loop
-from knitcore.machine.program import TAG_STITCHES
+from knitcore.machine.program_body import TAG_STITCHES
 
 MOST_LEFT_OUT = 0.25
 """Part of the stitches that may stand below or hang above a piece on other needles."""

@@ -30,6 +30,7 @@ from knitcore.machine.knitout_machine import Loop, knitting_of
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile
 from knitcore.machine.program import Finish, KnitoutProgram, knitout_program
 from knitcore.machine.program_check import check_program
+from knitcore.machine.tension import LoopYarn
 
 MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\S+) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
@@ -108,6 +109,7 @@ def verified(
     finish: Finish = Finish.WASTE,
     machine: MachineProfile | None = None,
     stitch_number: float | None = None,
+    yarn: LoopYarn | None = None,
 ) -> KnitoutProgram:
     """The program of a piece, after the virtual machine has knitted exactly this piece from it.
 
@@ -116,12 +118,14 @@ def verified(
     Raises
     ------
     InputError
-        If the machine cannot knit the piece.
+        If the machine cannot knit the piece, or transfers would break the yarn.
     KnitoutMismatchError
         If the virtual machine refuses the program, warns, or knits something else.
     """
     piece = Piece.of(chart).cropped()
-    made = knitout_program(piece, finish=finish, machine=machine, stitch_number=stitch_number)
+    made = knitout_program(
+        piece, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
+    )
     try:
         loops, warned = _interpreted(made.text)
         knitted = knitted_chart(made.text)

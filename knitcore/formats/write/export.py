@@ -41,6 +41,7 @@ from knitcore.machine.home.plan_rows import HandPlan
 from knitcore.machine.home.punch_card import punch_card
 from knitcore.machine.profile import MachineProfile, machine_of
 from knitcore.machine.program import Finish
+from knitcore.machine.setting import MachineSetting, setting_of
 from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from knitcore.prediction.size import RelaxedSize
@@ -250,17 +251,21 @@ def _of_extension(kind: str) -> Exporter:
     return extra[kind]
 
 
-def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+def _knitout(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
     machine = machine_of(options.layout.machine)
     piece = piece.from_row(options.from_row)
+    setting = _setting(piece, machine, material, options)
     program = verified(
-        piece, finish=options.finish, machine=machine, stitch_number=options.stitch_number
+        piece,
+        finish=options.finish,
+        machine=machine,
+        stitch_number=setting.number,
+        yarn=setting.yarn,
     )
-    given = options.stitch_number is not None
-    start = "" if given else "; it is a start: knit a swatch, and change it"
     notes = [
-        f"Made for {machine.name}, with stitch number {program.stitch_number:g}{start}.",
+        f"Made for {machine.name}. {setting.note}",
         "Knitted on a virtual V-bed machine: the face is this chart.",
+        *([program.spared] if program.spared else []),
     ]
     if options.from_row > 1:
         notes.append(
@@ -280,20 +285,38 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     )
 
 
-def _hand_plan(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    plan, notes = _planned(piece, options)
+def _setting(
+    piece: Piece, machine: MachineProfile, material: Material, options: ExportOptions
+) -> MachineSetting:
+    return setting_of(
+        piece,
+        machine,
+        material,
+        stitch_number=options.stitch_number,
+        linear_density_tex=options.linear_density_tex,
+        measured=options.measured_yarn,
+    )
+
+
+def _hand_plan(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+    plan, notes = _planned(piece, material, options)
     content = to_pdf(plan_pages(plan, options.name), options.name)
     return ExportedFile(ExportKind.HAND_PLAN, content, *_PDF, notes)
 
 
-def _hand_plan_text(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    plan, notes = _planned(piece, options)
+def _hand_plan_text(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+    plan, notes = _planned(piece, material, options)
     text = f"{options.name}\n{plan.text}"
     return ExportedFile(ExportKind.HAND_PLAN_TEXT, text.encode(), *_TXT, notes)
 
 
-def _planned(piece: Piece, options: ExportOptions) -> tuple[HandPlan, tuple[str, ...]]:
-    plan = hand_plan(piece, _home(options)).resumed(options.from_row)
+def _planned(
+    piece: Piece, material: Material, options: ExportOptions
+) -> tuple[HandPlan, tuple[str, ...]]:
+    machine = _home(options)
+    plan = hand_plan(piece, machine)
+    setting = _setting(piece, machine, material, options)
+    plan = replace(plan, notes=(setting.note, *plan.notes)).resumed(options.from_row)
     if options.construction is Construction.ROUND:
         return plan, (*plan.notes, plan.time, "The plan is worked flat: join the sides.")
     return plan, (*plan.notes, plan.time)

@@ -165,12 +165,15 @@ class HandPlan:
     def time(self) -> str:
         """The time in words, by what it is spent on."""
         spent = [
-            f"{name} {sum(task.seconds for task in self.tasks if task.act is act) / 60:.0f}"
+            f"{name} {minutes_in_words(self._minutes_of(act))}"
             for act, name in _TIMED.items()
             if any(task.act is act for task in self.tasks)
         ]
         details = f" ({', '.join(spent)})" if spent else ""
         return f"Time: about {minutes_in_words(self.minutes)}{details}. {GUESSED}"
+
+    def _minutes_of(self, act: Act) -> float:
+        return sum(task.seconds for task in self.tasks if task.act is act) / 60
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -240,8 +243,16 @@ class HandPlan:
 
 
 def minutes_in_words(minutes: float) -> str:
-    """Whole minutes, one at least."""
+    """Whole minutes, one at least, and hours of them from two on.
+
+    Examples
+    --------
+    >>> minutes_in_words(90), minutes_in_words(652)
+    ('90 minutes', '10 h 52 min')
+    """
     count = max(round(minutes), 1)
+    if count >= 120:
+        return f"{count // 60} h {count % 60} min"
     return "1 minute" if count == 1 else f"{count} minutes"
 
 

@@ -98,7 +98,12 @@ def test_the_service_takes_every_example(tmp_path: Path, schema: dict[str, Any])
 
 def every_answer(client: TestClient) -> dict[str, Any]:
     """The answer of every operation that answers with JSON."""
-    place: dict[str, Any] = {"material": "acrylic", "identifier": "acrylic", "number": 1}
+    place: dict[str, Any] = {
+        "material": "acrylic",
+        "identifier": "acrylic",
+        "number": 1,
+        "way": "flat",
+    }
     sessions = Sessions(client.app.state.database)  # type: ignore[attr-defined]
     place["session"] = sessions.begin("a token's id", LOCAL_USER)
     own: dict[str, Any] = {}

@@ -1,17 +1,19 @@
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore import Fabric, InputError, StitchChart
+from knitcore import Fabric, InputError, StitchChart, material
 from knitcore.formats.read.knitout_reader import KnitoutMismatchError, knitted_chart, verified
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile, profiles
 from knitcore.machine.program import Finish, knitout_program
 from knitcore.machine.program_check import check_program
+from knitcore.machine.tension import BREAK_RISK, LoopYarn, pass_tensions
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
 
@@ -72,6 +74,7 @@ def test_single_steps_are_decreases_and_larger_ones_are_bound_off() -> None:
     assert "rack -1" in program.text
 
 
+KNITERATE = profile("kniterate")
 MACHINES = [machine for machine in profiles().values() if machine.reads_programs]
 each_machine = pytest.mark.parametrize("machine", MACHINES, ids=lambda m: m.identifier)
 
@@ -122,6 +125,34 @@ def test_no_machine_finds_fault_with_its_programs(
 ) -> None:
     program = knitout_program(DESIGNS[design], finish=finish, machine=machine)
     assert check_program(program.text, machine) == ()
+
+
+def parked(machine: MachineProfile, side: Literal["left", "right"]) -> MachineProfile:
+    return replace(machine, carriers=replace(machine.carriers, parking=side))
+
+
+OTHER_SIDE = parked(profile("kniterate"), "right")
+
+
+@pytest.mark.parametrize("finish", list(Finish))
+@pytest.mark.parametrize("design", DESIGNS)
+def test_a_machine_whose_carriers_park_on_the_right_knits_mirrored(
+    design: str, finish: Finish
+) -> None:
+    program = knitout_program(DESIGNS[design], finish=finish, machine=OTHER_SIDE)
+    assert check_program(program.text, OTHER_SIDE) == ()
+    assert "carriers" in {problem.subject for problem in check_program(program.text, KNITERATE)}
+    usual = knitout_program(DESIGNS[design].mirrored(), finish=finish, machine=KNITERATE)
+    assert len(program.text.splitlines()) == len(usual.text.splitlines())
+
+
+@pytest.mark.parametrize("machine", [OTHER_SIDE])
+@pytest.mark.parametrize("design", ["rib", "three colours", "shaped"])
+@pytest.mark.slow
+def test_the_virtual_machine_knits_mirrored_programs(machine: MachineProfile, design: str) -> None:
+    machine = replace(machine, waste_passes=4)
+    program = verified(DESIGNS[design], machine=machine, finish=Finish.BIND_OFF)
+    assert knitted_chart(program.text).piece == DESIGNS[design].cropped()
 
 
 @each_machine
@@ -256,16 +287,7 @@ SINGLE_BED = replace(profile(DEFAULT), name="A single bed", beds=1)
             replace(profile(DEFAULT), racking=replace(profile(DEFAULT).racking, most_needles=0)),
             DESIGNS["plain"],
             Finish.BIND_OFF,
-            "outline: .* rack a bed by 1 needles",
-        ),
-        (
-            replace(
-                profile("kniterate"),
-                carriers=replace(profile("kniterate").carriers, parking="right"),
-            ),
-            DESIGNS["plain"],
-            Finish.WASTE,
-            r"carriers.parking: without a hook",
+            "outline: .* rack a bed",
         ),
         (
             profile("v-bed-half-gauge"),
@@ -274,7 +296,7 @@ SINGLE_BED = replace(profile(DEFAULT), name="A single bed", beds=1)
             "chart: 201 columns are wider than the machine's 400 needles at half gauge",
         ),
     ],
-    ids=["hand", "purl", "bind-off", "racking", "parking", "width"],
+    ids=["hand", "purl", "bind-off", "racking", "width"],
 )
 def test_what_a_machine_cannot_knit_is_refused_with_a_remedy(
     machine: MachineProfile, piece: Piece, finish: Finish, says: str
@@ -287,6 +309,39 @@ def test_what_a_machine_cannot_knit_is_refused_with_a_remedy(
 def test_a_single_bed_knits_a_plain_rectangle() -> None:
     program = knitout_program(DESIGNS["plain"], machine=SINGLE_BED)
     assert check_program(program.text, SINGLE_BED) == ()
+
+
+LACE = material("lace-acrylic")
+
+
+def test_short_loops_are_staged_so_that_racking_spares_them() -> None:
+    machine = profile("v-bed-half-gauge")
+    short = LoopYarn.of(LACE, loop_length_mm=6.2)
+    program = knitout_program(DESIGNS["shaped"], machine=machine, yarn=short)
+    assert "come to the front" in program.spared
+    risky = [step for step in pass_tensions(program.text, short, machine) if step.tightest]
+    assert max(step.tightest.break_chance for step in risky if step.tightest) < BREAK_RISK
+    long = LoopYarn.of(LACE, loop_length_mm=7.2)
+    plain = knitout_program(DESIGNS["shaped"], machine=machine, yarn=long)
+    assert plain.spared == ""
+
+
+def test_transfers_that_may_break_the_yarn_are_slowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("knitcore.machine.program.BREAK_RISK", 0.0)
+    seed = StitchChart.of_fabric("seed", rows=3, columns=4)
+    yarn = LoopYarn.of(LACE, loop_length_mm=11)
+    program = knitout_program(seed, machine=replace(KNITERATE, waste_passes=4), yarn=yarn)
+    assert "Slowed to 50: " in program.spared
+    lines = program.text.splitlines()
+    slow = [index for index, line in enumerate(lines) if line == "x-speed-number 50"]
+    assert slow
+    for index in slow:
+        assert lines[index + 1].startswith("xfer")
+        after = next(line for line in lines[index + 1 :] if not line.startswith("xfer"))
+        assert after == "x-speed-number 100"
+    watched = knitout_program(seed, machine=profile("v-bed-half-gauge"), yarn=yarn)
+    assert "Slow down and watch" in watched.spared
+    assert "x-speed" not in watched.text
 
 
 def test_32_x_32_is_exported_and_verified() -> None:

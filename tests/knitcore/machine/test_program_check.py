@@ -8,6 +8,7 @@ from knitcore.machine.profile import DEFAULT, MachineProfile, profile, profiles
 from knitcore.machine.program_check import check_program
 
 KNITERATE, SHIMA = profile("kniterate"), profile(DEFAULT)
+SETTINGS = ("x-stitch-number 5", "x-roller-advance 100")
 MACHINES = [machine for machine in profiles().values() if machine.reads_programs]
 each_machine = pytest.mark.parametrize("machine", MACHINES, ids=lambda m: m.identifier)
 
@@ -15,7 +16,14 @@ each_machine = pytest.mark.parametrize("machine", MACHINES, ids=lambda m: m.iden
 def program(machine: MachineProfile, *lines: str, headers: tuple[str, ...] = ()) -> str:
     carriers = " ".join(str(k) for k in range(1, machine.carriers.count + 1))
     return "\n".join(
-        [";!knitout-2", f";;Machine: {machine.header}", f";;Carriers: {carriers}", *headers, *lines]
+        [
+            ";!knitout-2",
+            f";;Machine: {machine.header}",
+            f";;Carriers: {carriers}",
+            *headers,
+            *lines,
+            *SETTINGS,
+        ]
     )
 
 
@@ -57,8 +65,8 @@ def test_more_carriers_than_there_are(machine: MachineProfile) -> None:
 
 def test_ten_carriers_in_the_header_of_a_machine_with_six() -> None:
     text = ";!knitout-2\n;;Carriers: 1 2 3 4 5 6 7 8 9 10\nin 1\nknit + f1 1\nout 1"
-    (problem,) = check_program(text, KNITERATE)
-    assert problem.remedy == "Write ;;Carriers: 1 2 3 4 5 6"
+    remedies = [problem.remedy for problem in check_program(text, KNITERATE)]
+    assert "Write ;;Carriers: 1 2 3 4 5 6" in remedies
 
 
 @each_machine
@@ -200,3 +208,58 @@ def test_a_yarn_that_is_left_in() -> None:
 @each_machine
 def test_any_text_can_be_checked(machine: MachineProfile, text: str) -> None:
     assert all(problem.line >= 1 for problem in check_program(text, machine))
+
+
+KINDS = {
+    "stitch size is not set": (KNITERATE, ["in 1", "knit + f1 1", "out 1"], "settings"),
+    "a stitch number that there is not": (
+        KNITERATE,
+        ["x-stitch-number 12", "in 1", "knit + f1 1", "out 1"],
+        "settings",
+    ),
+    "the piece comes before the waste yarn": (
+        KNITERATE,
+        ["in 3", *on_front("+", range(1, 5), 3), "out 3"],
+        "carriers",
+    ),
+    "two yarns on the hook": (
+        SHIMA,
+        ["inhook 1", "tuck - f2 1", "inhook 2", "tuck - f1 2", "outhook 1", "outhook 2"],
+        "carriers",
+    ),
+    "loops pile up on a needle": (
+        KNITERATE,
+        ["in 1", *["tuck + f1 1", "tuck - f1 1"] * 3, "out 1"],
+        "transfers",
+    ),
+    "transfers overlap on a needle": (
+        KNITERATE,
+        [
+            "in 1",
+            *on_front("+", range(1, 7)),
+            *(
+                line
+                for n in range(1, 6)
+                for line in (f"xfer f{n} b{n}", "rack 1", f"xfer b{n} f{n + 1}", "rack 0")
+            ),
+            "out 1",
+        ],
+        "transfers",
+    ),
+    "a split onto a loop": (
+        KNITERATE,
+        ["in 1", "knit + f1 1", "knit + b1 1", "split - f1 b1 1", "out 1"],
+        "transfers",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_kinds_that_other_peoples_programs_have(kind: str) -> None:
+    machine, lines, subject = KINDS[kind]
+    text = program(machine, *lines)
+    if kind == "stitch size is not set":
+        text = "\n".join(line for line in text.split("\n") if not line.startswith("x-"))
+    problems = check_program(text, machine)
+    assert subject in {problem.subject for problem in problems}
+    assert all(problem.remedy for problem in problems)

@@ -5,6 +5,7 @@ import { reportRows } from "../../../panels/exports/programreport.js";
 const REPORT = {
   interval_source: "",
   machine: "Kniterate, 7 gauge",
+  stitch_number: 6,
   passes: 27,
   knit_passes: 15,
   transfer_passes: 10,
@@ -43,6 +44,16 @@ test("a program's table gives time, yarn by carrier and the tightest loops", () 
   assert.equal(rows["Carrier 1"], "12.3 m, about 5.6 g");
   assert.match(rows["Transfers racked by 2"], /^1 pass, tightest loop tight, 0\.42 N \(0\.13 to 3\.0\), breaks/);
   assert.match(rows["Transfers straight across"], /^9 passes, tightest loop at rest$/);
+});
+
+test("a home machine has work by hand in place of passes of transfers", () => {
+  const yarns = [{ carrier: "A (main yarn)", loops: 90, length_m: 12.34, mass_g: 5.6 }];
+  const home = { passes: 15, knit_passes: 15, transfer_passes: 0, empty_passes: 0, kinds_of_transfer: [], yarns };
+  const rows = Object.fromEntries(reportRows({ ...REPORT, ...home }));
+  assert.equal(rows.Passes, "15");
+  assert.match(reportRows({ ...REPORT, minutes: 652 })[0][1], /^10 h 52 min without stops/);
+  assert.equal(rows["By hand"], "40 stitches moved or latched up");
+  assert.ok("Yarn A (main yarn)" in rows);
 });
 
 test("a price gives a cost", () => {

@@ -38,5 +38,9 @@ def test_a_program_is_held_against_a_machine(client: TestClient, tmp_path: Path)
     file.write_text(PROGRAM)
     checked = post(client, "machines/check", {"program": PROGRAM, "machine": "kniterate"})
     assert run("machines", "kniterate", "--program", file) == checked
-    assert {problem["subject"] for problem in checked["problems"]} == {"header", "carriers"}
+    assert {problem["subject"] for problem in checked["problems"]} == {
+        "header",
+        "carriers",
+        "settings",
+    }
     assert "can knit it" in printed("machines", "swg091n2", "--program", file).stdout

@@ -1,10 +1,13 @@
 """The figures of a program over REST and on the command line."""
 
+import pytest
 from fastapi.testclient import TestClient
 
-from tests.app.command_line import printed
+from knitcore.machine.profile import profiles
+from tests.app.command_line import printed, refused, run
 from tests.app.rest import post
 
+HOME = [machine.identifier for machine in profiles().values() if not machine.reads_programs]
 SEED = {"chart": {"fabric": "seed", "columns": 8, "rows": 6}}
 
 
@@ -31,3 +34,25 @@ def test_the_command_prints_a_line_for_each_kind_of_transfer() -> None:
     text = printed("program", "seed", "--size", "8x6", "--machine", "kniterate").stdout
     assert "rack 0: 11 passes" in text
     assert "min" in text
+
+
+@pytest.mark.parametrize("machine", HOME)
+def test_a_home_machine_has_minutes_and_yarn_too(client: TestClient, machine: str) -> None:
+    report = post(client, "program-report", SEED | {"machine": machine, "price_per_hour": 12})
+    assert report["passes"] == report["knit_passes"] == 6
+    assert report["transfers"] > 0
+    assert report["minutes"] > 1
+    assert report["cost"] == pytest.approx(report["minutes"] / 5)
+    assert [yarn["loops"] for yarn in report["yarns"]] == [48]
+    assert "our guess" in report["notes"][-1]
+    assert run(
+        "program", "seed", "--size", "8x6", "--machine", machine, "--price-per-hour", 12
+    ) == (report)
+
+
+def test_loops_too_short_for_their_transfers_are_refused_with_what_helps() -> None:
+    lace = ["rib", "--size", "8x6", "--machine", "kniterate", "--material", "lace-cashmere"]
+    words = refused("program", *lace, "--finish", "bind-off")
+    assert "would break" in words
+    assert "Knit with loops of" in words
+    assert run("program", *lace, "--finish", "bind-off", "--stitch-number", 8)["transfers"] > 0

@@ -54,7 +54,7 @@ def test_the_migrations_make_the_tables(database: Database) -> None:
     """The first migration has the number of the schema that programs wrote before it."""
     migrate(database)
     migrate(database)
-    assert revision(database) == "0009"
+    assert revision(database) == "0010"
     with database.read() as connection:
         assert compare_metadata(MigrationContext.configure(connection), metadata) == []
 
@@ -65,7 +65,7 @@ def test_tables_change_with_a_migration_only() -> None:
     tables = [str(CreateTable(table)) for table in metadata.sorted_tables]
     indexes = [str(CreateIndex(i)) for table in metadata.sorted_tables for i in table.indexes]
     digest = hashlib.sha256("".join(sorted(tables + indexes)).encode()).hexdigest()
-    assert digest.startswith("79ed047097c34e4f")
+    assert digest.startswith("fd0b35c44016f7ae")
 
 
 def test_a_database_of_an_unknown_schema_is_left_alone(database: Database) -> None:
@@ -79,8 +79,8 @@ def test_a_database_of_an_unknown_schema_is_left_alone(database: Database) -> No
 def test_a_migration_keeps_a_copy_of_the_file(file: Database, tmp_path: Path) -> None:
     migrate(file, "0008")
     migrate(file)
-    assert revision(file) == "0009"
-    assert (tmp_path / "knitcore.sqlite3.before-0009").is_file()
+    assert revision(file) == "0010"
+    assert (tmp_path / "knitcore.sqlite3.before-0010").is_file()
 
 
 def test_commits_are_flushed_to_disk(file: Database) -> None:
