@@ -99,7 +99,7 @@ export function create(studio, { keeper, open }) {
     "div",
     { class: "line wrap gap-8" },
     textButton("export", "File from this row", fromHere, { class: "button quiet", id: "along-file" }),
-    textButton("copy", "Print all rows", print, { class: "button quiet" }),
+    textButton(null, "Print all rows", print, { class: "button quiet" }),
   );
   const reading = h("div", { class: "along-main" }, row, picture, next, counter, kept, files);
   const paper = h("div", { class: "along-paper" });
