@@ -48,7 +48,7 @@ def _load() -> None:
     # cut pieces have another mesh, and other compiled code
     laws = SheetModel().parameters([material("acrylic").law(Fabric.GARTER)])
     at_rest = np.eye(2).reshape(1, 4)
-    law_of_point = np.zeros(1, dtype=np.uint8)
+    law_of_point = np.zeros(1, dtype=np.int32)
     respond(laws, law_of_point, False, at_rest, np.empty((1, 4)), np.empty((1, 4, 4)))
 
 
