@@ -16,7 +16,7 @@ Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
@@ -69,12 +69,17 @@ class KnitoutProgram:
     draws_waste: bool = False
 
 
+BodyOf = Callable[[Piece, CarrierPlan, MachineProfile, float], "ProgramBody"]
+"""Makes the passes of a program."""
+
+
 def knitout_program(
     chart: StitchChart | Piece,
     *,
     finish: Finish = Finish.WASTE,
     machine: MachineProfile | None = None,
     stitch_number: float | None = None,
+    body_of: BodyOf | None = None,
 ) -> KnitoutProgram:
     """The program of a chart; :func:`knitcore.formats.read.knitout_reader.verified` checks it.
 
@@ -84,6 +89,7 @@ def knitout_program(
     finish : how it ends.
     machine : the machine's profile; :data:`knitcore.machine.profile.DEFAULT` if none is given.
     stitch_number : of the piece's stitches; the profile's default if none is given.
+    body_of : makes the passes; by default those of knits and purls.
 
     Raises
     ------
@@ -102,7 +108,7 @@ def knitout_program(
     piece = Piece.of(chart)
     _check_machine(piece, machine)
     plan = plan_carriers(piece, machine.carriers)
-    body = _Body(piece, plan, machine, number)
+    body = (body_of or ProgramBody)(piece, plan, machine, number)
     courses = [*body.cast_on(), *body.courses()]
     yarns = piece.yarns
     lines = [
@@ -212,7 +218,7 @@ def _check_beds(lines: Sequence[str], machine: MachineProfile) -> None:
         )
 
 
-class _Body:
+class ProgramBody:
     """The passes of a program, with the bed of each loop."""
 
     def __init__(
