@@ -8,11 +8,13 @@ time in proportion to its length, and lines are counted from 1.
 Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
+from __future__ import annotations
+
+import math
 import re
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, TypeVar
 
 from knitcore.base.errors import InputError
 
@@ -53,12 +55,12 @@ class Loop:
     carriers: tuple[str, ...]
     strand: tuple[int, ...]
     line: int
-    parents: tuple["Loop", ...]
+    parents: tuple[Loop, ...]
     onto: bool = False
-    child: "Loop | None" = None
+    child: Loop | None = None
     dropped: bool = False
-    before: "Loop | None" = None
-    after: "Loop | None" = None
+    before: Loop | None = None
+    after: Loop | None = None
 
     @property
     def name(self) -> str:
@@ -81,6 +83,28 @@ class Knitting:
     notes: tuple[str, ...]
 
 
+Held = dict[tuple[str, int], tuple[Loop, ...]]
+"""The loops on each needle; of those on one needle, those on the side of its bed first."""
+CrossedLoops = dict[frozenset[int], list[int]]
+"""For two loops by their numbers, which passed in front while they changed places."""
+
+
+@dataclass(frozen=True)
+class LoopState:
+    """What the needles hold before a pass of the carriage.
+
+    Attributes
+    ----------
+    before : number of the first loop of the pass.
+    held : loops on the needles.
+    crossed : loops that racking carried past each other since the pass before.
+    """
+
+    before: int
+    held: Held
+    crossed: CrossedLoops
+
+
 def looks_like_program(text: str) -> bool:
     """Say whether a text is a program, whatever its file is called."""
     return _PROGRAM.search(text) is not None
@@ -94,14 +118,30 @@ def knitting_of(program: str) -> Knitting:
     InputError
         If a line is not knitout, or asks for what no machine can do; it names the line.
     """
-    machine = _Machine()
+    machine = _run(_Machine(), program)
+    notes = machine.notes()
+    if not program.removeprefix("\ufeff").startswith(MAGIC):
+        notes = ["The first line does not say ;!knitout-2; read as version 2.", *notes]
+    return Knitting(tuple(machine.loops), machine.colours, tuple(notes))
+
+
+def states_of(program: str) -> tuple[Knitting, tuple[LoopState, ...]]:
+    """Knit a program, and tell what the needles hold before each pass.
+
+    Raises
+    ------
+    InputError
+        As :func:`knitting_of`.
+    """
+    machine = _run(_StateMachine(), program)
+    return Knitting(tuple(machine.loops), machine.colours, ()), tuple(machine.states)
+
+
+def _run(machine: MachineOf, program: str) -> MachineOf:
     lines = re.split(r"\r\n|\r|\n", program.removeprefix("\ufeff"))
     for number, line in enumerate(lines, 1):
         machine.read(number, line.strip())
-    notes = machine.notes()
-    if not lines[0].startswith(MAGIC):
-        notes = ["The first line does not say ;!knitout-2; read as version 2.", *notes]
-    return Knitting(tuple(machine.loops), machine.colours, tuple(notes))
+    return machine
 
 
 @dataclass
@@ -140,7 +180,7 @@ class _Machine:
                 f"{operation[:40]!r} is not an operation of knitout.",
                 "Correct it; operations of a machine's own begin with x-.",
             )
-        carry_out(self, given)
+        getattr(self, carry_out)(given)
 
     def notes(self) -> list[str]:
         """Tell which headers and operations have no bearing on the loops."""
@@ -336,21 +376,90 @@ class _Machine:
         del given
 
 
-_OPERATIONS: Final[dict[str, Callable[[_Machine, list[str]], None]]] = {
-    "in": _Machine.bring_in,
-    "inhook": _Machine.bring_in,
-    "out": _Machine.take_out,
-    "outhook": _Machine.take_out,
-    "releasehook": _Machine.release,
-    "knit": _Machine.knit,
-    "tuck": _Machine.tuck,
-    "split": _Machine.split,
-    "xfer": _Machine.transfer,
-    "drop": _Machine.drop,
-    "amiss": _Machine.no_stitch,
-    "miss": _Machine.miss,
-    "kick": _Machine.miss,
-    "rack": _Machine.rack,
-    "stitch": _Machine.no_stitch,
-    "pause": _Machine.no_stitch,
+@dataclass
+class _StateMachine(_Machine):
+    """A machine that remembers the states before its passes."""
+
+    states: list[LoopState] = field(default_factory=list)
+    _crossed: CrossedLoops = field(default_factory=dict)
+    _meeting: dict[frozenset[int], int] = field(default_factory=dict)
+    """Side on which the loop of the lower number came, of two that face each other."""
+    _pass: tuple[bool, tuple[int, ...]] | None = None
+
+    def transfer(self, given: list[str]) -> None:
+        here, there = map(self._needle, self._words(given, 2, "xfer NEEDLE NEEDLE")[:2])
+        if here[0][0] != there[0][0] and here in self._held:
+            self._held[here].reverse()  # the bed's own side is the other one there
+        super().transfer(given)
+
+    def rack(self, given: list[str]) -> None:
+        before = self._rack
+        super().rack(given)
+        for (bed, needle), behind in self._held.items():
+            if bed != "b":
+                continue
+            start, end = needle + before, needle + self._rack
+            for number in range(math.floor(min(start, end)), math.ceil(max(start, end)) + 1):
+                for front in self._held.get(("f", number), ()):
+                    for back in behind:
+                        self._pass_by(front, back, number - start, number - end)
+
+    def _pass_by(self, front: Loop, back: Loop, before: float, after: float) -> None:
+        """Note a loop that lies on the other side of another than before."""
+        pair = frozenset((front.number, back.number))
+        way = 1 if front.number < back.number else -1
+        side = way * _sign(before) or self._meeting.pop(pair, 0)
+        if not after:
+            self._meeting[pair] = side
+        elif side and side != way * _sign(after):
+            crossings = self._crossed.setdefault(pair, [])
+            if crossings and crossings[-1] == front.number:
+                crossings.pop()
+            else:
+                crossings.append(front.number)
+
+    def _make(
+        self,
+        kind: str,
+        needle: tuple[str, int],
+        rightwards: bool,
+        carriers: list[str],
+        parents: tuple[Loop, ...],
+    ) -> Loop:
+        strand = tuple(self._strand(carrier) for carrier in carriers)
+        begun = self.states[-1].before if self.states else 0
+        is_linked = any(parent.number >= begun for parent in parents)
+        if self._pass != (rightwards, strand) or is_linked:
+            held = {place: tuple(loops) for place, loops in self._held.items() if loops}
+            if parents:
+                held[needle] = parents
+            self.states.append(LoopState(len(self.loops), held, self._crossed))
+            self._pass, self._crossed = (rightwards, strand), {}
+        return super()._make(kind, needle, rightwards, carriers, parents)
+
+
+MachineOf = TypeVar("MachineOf", bound=_Machine)
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+_OPERATIONS: Final[dict[str, str]] = {
+    "in": "bring_in",
+    "inhook": "bring_in",
+    "out": "take_out",
+    "outhook": "take_out",
+    "releasehook": "release",
+    "knit": "knit",
+    "tuck": "tuck",
+    "split": "split",
+    "xfer": "transfer",
+    "drop": "drop",
+    "amiss": "no_stitch",
+    "miss": "miss",
+    "kick": "miss",
+    "rack": "rack",
+    "stitch": "no_stitch",
+    "pause": "no_stitch",
 }

@@ -16,7 +16,7 @@ Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -25,7 +25,7 @@ import numpy as np
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.piece import Piece
-from knitcore.machine.carriers import plan_carriers
+from knitcore.machine.carriers import CarrierPlan, plan_carriers
 from knitcore.machine.profile import DEFAULT, Dialect, MachineProfile, profile, profiles
 from knitcore.machine.program_body import ProgramBody
 from knitcore.machine.tension import (
@@ -74,6 +74,12 @@ class KnitoutProgram:
     spared: str = ""
 
 
+BodyOf = Callable[
+    [Piece, CarrierPlan, MachineProfile, float, LoopYarn | None, frozenset[int]], ProgramBody
+]
+"""Makes the passes of a program."""
+
+
 def knitout_program(
     chart: StitchChart | Piece,
     *,
@@ -81,6 +87,7 @@ def knitout_program(
     machine: MachineProfile | None = None,
     stitch_number: float | None = None,
     yarn: LoopYarn | None = None,
+    body_of: BodyOf = ProgramBody,
 ) -> KnitoutProgram:
     """The program of a chart; :func:`knitcore.formats.read.knitout_reader.verified` checks it.
 
@@ -92,6 +99,7 @@ def knitout_program(
     stitch_number : of the piece's stitches; the profile's default if none is given.
     yarn : of the piece: transfers that would break it are staged, slowed or refused; None does not
         look at it.
+    body_of : makes the passes of the piece, which is mirrored if :func:`is_mirrored` says so.
 
     Raises
     ------
@@ -109,7 +117,7 @@ def knitout_program(
     number = _checked_number(machine, stitch_number)
     piece = Piece.of(chart)
     _check_machine(piece, machine)
-    lines, spared = _knitted(piece, machine, number, finish, yarn)
+    lines, spared = _knitted(piece, machine, number, finish, yarn, body_of)
     stitch = piece.shaped.stitch
     changed = (piece.chart.purl[1:] ^ piece.chart.purl[:-1]) & stitch[1:] & stitch[:-1]
     crossings = int(np.count_nonzero(changed))
@@ -130,17 +138,22 @@ def knitout_program(
 
 
 def _knitted(
-    piece: Piece, machine: MachineProfile, number: float, finish: Finish, yarn: LoopYarn | None
+    piece: Piece,
+    machine: MachineProfile,
+    number: float,
+    finish: Finish,
+    yarn: LoopYarn | None,
+    body_of: BodyOf,
 ) -> tuple[list[str], str]:
     """The lines of a program that the yarn stands, and what was done for it."""
-    lines = _lines(piece, machine, number, finish, yarn)
+    lines = _lines(piece, machine, number, finish, yarn, body_of)
     if yarn is None:
         return lines, ""
     risky = _risky(lines, yarn, machine)
     staged = frozenset(_course(lines, step.line) - 1 for step in risky if step.rack)
     spared = ""
     if staged:
-        lines = _lines(piece, machine, number, finish, yarn, staged)
+        lines = _lines(piece, machine, number, finish, yarn, body_of, staged)
         rows = f"{len(staged)} {'course' if len(staged) == 1 else 'courses'}"
         spared = f"Before {rows}, all loops come to the front so that racking spares the yarn."
         risky = _risky(lines, yarn, machine)
@@ -197,6 +210,7 @@ def _lines(
     number: float,
     finish: Finish,
     yarn: LoopYarn | None,
+    body_of: BodyOf,
     staged: frozenset[int] = frozenset(),
 ) -> list[str]:
     """All lines of a program.
@@ -204,11 +218,9 @@ def _lines(
     Yarn comes from the right by a hook, and from the left otherwise; a machine that is the other
     way round knits the mirrored program of the mirrored piece.
     """
-    park = machine.carriers
-    is_mirrored = not park.hooks and park.parking == "right"
-    piece = piece.mirrored() if is_mirrored else piece
-    plan = plan_carriers(piece, park)
-    body = ProgramBody(piece, plan, machine, number, yarn, staged)
+    piece = piece.mirrored() if is_mirrored(machine) else piece
+    plan = plan_carriers(piece, machine.carriers)
+    body = body_of(piece, plan, machine, number, yarn, staged)
     yarns = piece.yarns
     lines = [
         *body.start(),
@@ -220,8 +232,13 @@ def _lines(
     return [
         *_headers(machine),
         *(f"; carrier {k} knits {yarns[y].colour} {yarns[y].name}" for k, y in plan.yarns.items()),
-        *(_mirrored(lines) if is_mirrored else lines),
+        *(_mirrored(lines) if is_mirrored(machine) else lines),
     ]
+
+
+def is_mirrored(machine: MachineProfile) -> bool:
+    """Say whether a machine knits the mirrored program of the mirrored piece."""
+    return not machine.carriers.hooks and machine.carriers.parking == "right"
 
 
 def _mirrored(lines: Sequence[str]) -> Iterator[str]:

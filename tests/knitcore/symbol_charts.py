@@ -3,13 +3,14 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from knitcore.chart.stitch_kinds import BY_CODE, STITCHES, YarnAct
+from knitcore.chart.stitch_kinds import BY_CODE, STITCHES
 from knitcore.chart.symbol_chart import CONTINUED, SymbolChart
 
 YARN_OVER = BY_CODE["O"]
 ONE_FOR_ONE = [p for p, s in enumerate(STITCHES) if s.takes == s.width == 1]
 DECREASES = [p for p, s in enumerate(STITCHES) if s.takes > s.width]
 CROSSINGS = [p for p, s in enumerate(STITCHES) if s.width > 1]
+KINDS = [ONE_FOR_ONE, DECREASES, CROSSINGS]
 EVERY = [place for place in range(len(STITCHES)) if place != YARN_OVER]
 
 
@@ -26,14 +27,12 @@ def chart_with(place: int) -> SymbolChart:
 
 
 @st.composite
-def _rows(draw: st.DrawFn, columns: int, *, acts: bool) -> list[int]:
+def _rows(draw: st.DrawFn, columns: int, allowed: list[int]) -> list[int]:
     """A row that takes as many loops as it leaves, and ends in a knit or a purl."""
-    singles = [p for p in ONE_FOR_ONE if acts or STITCHES[p].sites[0].act is YarnAct.THROUGH]
     row: list[int] = []
     while (room := columns - 1 - len(row)) > 0:
-        kinds = [singles]
-        kinds += [fit] if (fit := [p for p in DECREASES if STITCHES[p].takes <= room]) else []
-        kinds += [fit] if (fit := [p for p in CROSSINGS if STITCHES[p].width <= room]) else []
+        fitting = [place for place in allowed if STITCHES[place].takes <= room]
+        kinds = [fit for kind in KINDS if (fit := [place for place in fitting if place in kind])]
         place = draw(st.sampled_from(draw(st.sampled_from(kinds))))
         group = [place, *[YARN_OVER] * (STITCHES[place].takes - STITCHES[place].width)]
         row += [cell for part in draw(st.permutations(group)) for cell in cells_of(part)]
@@ -42,10 +41,11 @@ def _rows(draw: st.DrawFn, columns: int, *, acts: bool) -> list[int]:
 
 @st.composite
 def symbol_charts(
-    draw: st.DrawFn, *, most_rows: int = 4, most_columns: int = 9, acts: bool = True
+    draw: st.DrawFn, *, most_rows: int = 4, most_columns: int = 9, turned: bool = True
 ) -> SymbolChart:
-    """Charts of any stitches; without ``acts`` none is slipped or tucked."""
+    """Charts of any stitches; without ``turned`` none is twisted."""
+    allowed = [p for p in EVERY if turned or not any(s.turn for s in STITCHES[p].sites)]
     columns = draw(st.integers(1, most_columns))
-    rows = [draw(_rows(columns, acts=acts)) for _ in range(draw(st.integers(1, most_rows)))]
+    rows = [draw(_rows(columns, allowed)) for _ in range(draw(st.integers(1, most_rows)))]
     top = draw(st.lists(st.sampled_from([0, 1]), min_size=columns, max_size=columns))
     return SymbolChart(np.array([*rows, top], dtype=np.int16))

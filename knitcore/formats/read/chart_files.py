@@ -231,11 +231,11 @@ def _read_design(file: Path) -> StitchesInFile:
 
 
 def _read_knitout(file: Path) -> StitchesInFile:
-    from knitcore.formats.read.knitout_reader import knitted_chart
+    from knitcore.formats.read.knitout_reader import knitted_stitches
 
     text, notes = _text(file)
-    knitted = knitted_chart(text)
-    return StitchesInFile(knitted.piece, (*notes, *knitted.notes))
+    knitted = knitted_stitches(text)
+    return StitchesInFile(knitted.content, (*notes, *knitted.notes))
 
 
 def _text(file: Path) -> tuple[str, tuple[str, ...]]:

@@ -21,20 +21,25 @@ import numpy as np
 
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.formats.read.chart_files import PieceInFile
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.formats.read.chart_files import PieceInFile, StitchesInFile
 from knitcore.formats.read.knitout_courses import KnittedCourses, fabric_of
-from knitcore.formats.read.knitout_parts import main_part, named, part_knitted_by
+from knitcore.formats.read.knitout_parts import KnittedPart, main_part, named, part_knitted_by
+from knitcore.formats.read.knitout_stitches import chart_of_states
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
-from knitcore.machine.knitout_machine import Loop, knitting_of
+from knitcore.machine.knitout_machine import Loop, knitting_of, states_of
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile
 from knitcore.machine.program import Finish, KnitoutProgram, knitout_program
 from knitcore.machine.program_check import check_program
+from knitcore.machine.stitch_program import stitch_program
 from knitcore.machine.tension import LoopYarn
 
 MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\S+) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
 _OF_MACHINE = re.compile(r"^(?:x-|;;(?!Carriers)).*\n", re.MULTILINE)
+_COURSES = re.compile(r"^; course 1\n(?:(?!; waste|; bind).*\n)*", re.MULTILINE)
+"""The courses in a program of this library."""
 _COLOURS = ("#efe9dd", "#1f3b70", "#b03a2e", "#2e7d5b", "#c99a2e", "#6b4a8a", "#3a8fb0", "#8a5a3c")
 
 
@@ -43,16 +48,28 @@ class KnitoutMismatchError(KnitcoreError):
 
 
 def knitted_chart(program: str) -> PieceInFile:
-    """The face of a flat program of knits and purls, without cast-on, bind-off and waste.
+    """The face of a flat program of knits and purls, as by :func:`knitted_stitches`."""
+    read = knitted_stitches(program, others=False)
+    return PieceInFile(Piece.of(read.content), read.notes)
+
+
+def knitted_stitches(program: str, *, others: bool = True) -> StitchesInFile:
+    """The face of a flat program, without cast-on, bind-off and waste.
 
     Comments ``; carrier 1 knits #rrggbb name`` name the carriers that knit the chart. Without
     them the piece is told from waste by the loops.
 
+    Parameters
+    ----------
+    program : its text.
+    others : whether other stitches than knits and purls are read, too.
+
     Raises
     ------
     InputError
-        If the program is too long, is not knitout, or makes anything but knits and purls within
-        an outline; it names course, needle, line and kind.
+        If the program is too long, is not knitout, or makes neither knits and purls within an
+        outline nor rows of stitches that all reach over the same wales; it names course, needle,
+        line and kind.
     """
     if len(program.encode()) > MAX_BYTES:
         raise InputError("knitout", "the program is too long.", f"Use at most {MAX_BYTES} B.")
@@ -63,7 +80,20 @@ def knitted_chart(program: str) -> PieceInFile:
         (m[1],): PieceYarn(m[3].strip(), m[2]) for m in _HOLDS.finditer(program)
     }
     part = part_knitted_by(knitting.loops, yarns) if yarns else main_part(knitting.loops)
-    fabric = fabric_of(knitting.loops, part.stitches)
+    own = _COURSES.search(program) if yarns else None
+    chart = None
+    if own is not None and re.search(r"\n(?:miss|tuck|rack)", own[0]):
+        begin = program.count("\n", 0, own.start()) + 1
+        chart = _other_stitches(program, part, range(begin, begin + own[0].count("\n") + 1))
+    if chart is not None:
+        return StitchesInFile(chart, (*part.notes, *knitting.notes))
+    try:
+        fabric = fabric_of(knitting.loops, part.stitches)
+    except InputError:
+        chart = _other_stitches(program, part) if others else None
+        if chart is None:
+            raise
+        return StitchesInFile(chart, (*part.notes, *knitting.notes))
     carriers = list(dict.fromkeys(loop.carriers for course in fabric.courses for loop in course))
     yarn_notes: list[str] = []
     if not yarns:
@@ -74,7 +104,25 @@ def knitted_chart(program: str) -> PieceInFile:
     notes = [*part.notes, *yarn_notes, *fabric.notes, *knitting.notes]
     if any(len(names) > 1 for names in carriers):
         notes.append("Yarns that knit together (plating) count as one yarn.")
-    return PieceInFile(_piece(fabric, yarns), tuple(notes))
+    return StitchesInFile(_piece(fabric, yarns), tuple(notes))
+
+
+def _other_stitches(
+    program: str, part: KnittedPart, lines: range | None = None
+) -> SymbolChart | None:
+    """The chart of other stitches that a part, or lines of a program, make, if they do."""
+    if len({loop.carriers for loop in part.stitches}) != 1:
+        return None
+    knitting, states = states_of(program)
+    made = part.stitches
+    if lines is not None:
+        made = tuple(loop for loop in knitting.loops if loop.line in lines)
+    first, last = made[0].number, made[-1].number
+    try:
+        chart = chart_of_states(knitting.loops, states, first, last)
+    except InputError:
+        return None
+    return None if chart.is_plain else chart
 
 
 def _yarns(
@@ -104,7 +152,7 @@ def _piece(fabric: KnittedCourses, yarns: Mapping[tuple[str, ...], PieceYarn]) -
 
 
 def verified(
-    chart: StitchChart | Piece,
+    chart: StitchChart | Piece | SymbolChart,
     *,
     finish: Finish = Finish.WASTE,
     machine: MachineProfile | None = None,
@@ -122,16 +170,23 @@ def verified(
     KnitoutMismatchError
         If the virtual machine refuses the program, warns, or knits something else.
     """
-    piece = Piece.of(chart).cropped()
-    made = knitout_program(
-        piece, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
-    )
+    meant: Piece | SymbolChart
+    if isinstance(chart, SymbolChart) and not chart.is_plain:
+        meant = chart
+        made = stitch_program(
+            chart, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
+        )
+    else:
+        meant = Piece.of(chart).cropped()
+        made = knitout_program(
+            meant, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
+        )
     try:
         loops, warned = _interpreted(made.text)
-        knitted = knitted_chart(made.text)
+        knitted = knitted_stitches(made.text)
     except InputError as error:
         raise KnitoutMismatchError(f"the program was refused: {error}") from error
-    if loops != _graph(knitting_of(made.text).loops) or knitted.piece != piece:
+    if loops != _graph(knitting_of(made.text).loops) or knitted.content != meant:
         raise KnitoutMismatchError("the virtual machine knitted another chart.")
     if warned:
         raise KnitoutMismatchError(f"the virtual machine warned: {warned[0]}")

@@ -422,7 +422,7 @@ class _Reader:
             self._next += 1
         place = BY_CODE["V" if read.code == SLIP else read.code]
         form = SLIP if read.code == SLIP else STITCHES[place].words
-        unit = (WrittenStitch(place, self._named_yarn(), form),)
+        unit: Stitches = (WrittenStitch(place, self._named_yarn(), form),)
         unit *= min(read.often, MAX_STITCHES_PER_SIDE + 1)
         self._skip("st", "sts", "stitch", "stitches")
         leave, times, more = self._tail()

@@ -155,7 +155,9 @@ def stitch_shapes(
         yield Dots(tuple(dots), round((0.22 if is_alone else 0.11) * small, 3), colour)
 
 
-def _cut(line: tuple[float, float, float, float], within: Span) -> tuple[float, ...] | None:
+def _cut(
+    line: tuple[float, float, float, float], within: Span
+) -> tuple[float, float, float, float] | None:
     """The part of a line between two uprights."""
     (x, y, far, beyond), (low, high) = line, within
     if low <= min(x, far) and max(x, far) <= high:
@@ -187,8 +189,9 @@ def _more_stitches(style: ChartStyle) -> float:
 
 def _kinds(style: ChartStyle) -> list[StitchType]:
     """Kinds of stitches of a chart that has others than knits and purls."""
-    used = [] if style.stitches is None else np.unique(style.stitches.cells)
-    return [STITCHES[place] for place in used if place >= 0]
+    if style.stitches is None:
+        return []
+    return [STITCHES[place] for place in np.unique(style.stitches.cells) if place >= 0]
 
 
 def _region_lines(style: ChartStyle) -> list[tuple[RegionMark, ...]]:

@@ -251,12 +251,24 @@ def _of_extension(kind: str) -> Exporter:
     return extra[kind]
 
 
-def _knitout(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+def _knitout_of_stitches(
+    chart: SymbolChart, material: Material, options: ExportOptions
+) -> ExportedFile:
+    if options.from_row > 1:
+        problem = "a program with lace, cables, tucks or slips begins at row 1."
+        raise InputError("from_row", problem, "Give the rows that are left as a chart.")
+    return _knitout(chart, material, options)
+
+
+def _knitout(
+    chart: Piece | SymbolChart, material: Material, options: ExportOptions
+) -> ExportedFile:
     machine = machine_of(options.layout.machine)
+    piece = chart if isinstance(chart, Piece) else Piece.plain(chart.plain)
     piece = piece.from_row(options.from_row)
     setting = _setting(piece, machine, material, options)
     program = verified(
-        piece,
+        piece if isinstance(chart, Piece) else chart,
         finish=options.finish,
         machine=machine,
         stitch_number=setting.number,
@@ -452,7 +464,7 @@ _LOCAL = ("Local values come from the quarter-cell composite: the stretched, fla
 _DRAWN = ("Loops are drawn schematically; the yarn was not simulated.",)
 
 _BUILT_IN = (
-    Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout),
+    Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout, write_stitches=_knitout_of_stitches),
     Exporter(
         ExportKind.KNITSPEAK,
         ".ks",
