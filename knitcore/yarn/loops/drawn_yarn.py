@@ -41,12 +41,12 @@ class DrawnYarn:
     exact: int
 
     @property
-    def lengths_mm(self) -> Array:
-        """(rows,) length of each row's yarn, mm."""
+    def loop_lengths_mm(self) -> Array:
+        """(rows,) length of yarn of each row, mm per site."""
         lines = centre_lines(self.cell, self.state, self.cell.rows, self.cell.wales)
         ahead = lines[:, :1] + (self.cell.wales * self.state[-2], 0.0, 0.0)
         steps = np.diff(np.concatenate([lines, ahead], axis=1), axis=1)
-        return np.asarray(np.linalg.norm(steps, axis=2).sum(axis=1))
+        return np.asarray(np.linalg.norm(steps, axis=2).sum(axis=1) / self.cell.wales)
 
 
 def drawn_yarn(graph: StitchGraph, wale_mm: float, row_mm: float, layer_mm: float) -> DrawnYarn:
@@ -62,7 +62,7 @@ def drawn_yarn(graph: StitchGraph, wale_mm: float, row_mm: float, layer_mm: floa
     ConvergenceError
         If no resolution shows all crossings.
     """
-    paths, asked = LoopPaths(HeldLoops(graph)), Crossings.of(graph)
+    paths, needed = LoopPaths(HeldLoops(graph)), Crossings.of(graph)
     rows, height = graph.rows, float(paths.heights[-1]) * row_mm
     lines = [
         _Line.of(paths.of_row(row), np.array([wale_mm, row_mm, layer_mm])) for row in range(rows)
@@ -75,9 +75,9 @@ def drawn_yarn(graph: StitchGraph, wale_mm: float, row_mm: float, layer_mm: floa
         curves = centre_lines(cell, state, rows, graph.columns)
         parts = np.stack([line.parts(cell.place / graph.columns) for line in lines])
         drawn = drawn_crossings(curves, parts, graph.columns * wale_mm, height)
-        wrong = asked.wrong(drawn)
+        wrong = needed.wrong(drawn)
         if not wrong:
-            return DrawnYarn(cell, state, drawn, sum(asked.exact.values()))
+            return DrawnYarn(cell, state, drawn, sum(needed.exact.values()))
     row, column, _ = wrong[0].lower
     raise ConvergenceError(
         f"The yarn at row {row + 1}, stitch {column + 1} cannot be drawn as the chart says. Make "

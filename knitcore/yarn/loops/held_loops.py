@@ -1,4 +1,4 @@
-"""Which loops every needle holds, in which order, and where they lie side by side.
+"""The loops that every needle holds, their order, and where they lie side by side.
 
 A row has two levels. On the *nodes* a new loop meets those that it is pulled through, and held
 loops meet the yarn that passes them. *Between* a row and the next every loop changes over to the
@@ -23,14 +23,14 @@ _ASIDE = 0.05
 """Distance between loops of neighbouring columns on one needle, in wales."""
 
 
-class Loop(NamedTuple):
+class YarnLoop(NamedTuple):
     """A loop of yarn, named by the site that made it, in any copy of the repeat."""
 
     row: int
     column: int
 
 
-class Held(NamedTuple):
+class HeldLoop(NamedTuple):
     """A loop on a needle.
 
     Attributes
@@ -42,7 +42,7 @@ class Held(NamedTuple):
     rise : place of its head among the others', 0 the lowest.
     """
 
-    loop: Loop
+    loop: YarnLoop
     layer: int
     aside: float
     half_width: float
@@ -60,14 +60,14 @@ class HeldLoops:
         """Column of the site above that takes a site's loops, (rows, columns)."""
         return self.graph.taker()
 
-    def taken_by(self, row: int, column: int) -> Loop:
+    def taken_by(self, row: int, column: int) -> YarnLoop:
         """The site that takes what a site hands up."""
         copy, at = divmod(column, self.graph.columns)
         taker = int(self.taker[row % self.graph.rows, at])
-        return Loop(row + 1, taker + copy * self.graph.columns)
+        return YarnLoop(row + 1, taker + copy * self.graph.columns)
 
     def act(self, row: int, column: int) -> YarnAct:
-        """What a site does."""
+        """The act of a site."""
         return YarnAct(self.graph.act[row % self.graph.rows, column % self.graph.columns])
 
     def turn(self, row: int, column: int) -> int:
@@ -80,24 +80,24 @@ class HeldLoops:
         missed = self.graph.act[at] == YarnAct.MISS
         return not (self.graph.front[at] if missed else self.graph.purl[at])
 
-    def on_needle(self, row: int, column: int) -> tuple[Held, ...]:
+    def on_needle(self, row: int, column: int) -> tuple[HeldLoop, ...]:
         """The loops that a site takes, the front of the fabric first."""
         copy, at = divmod(column, self.graph.columns)
         row_copy, row = divmod(row, self.graph.rows)
         shift = row_copy * self.graph.rows, copy * self.graph.columns
         return tuple(
-            held._replace(loop=Loop(held.loop.row + shift[0], held.loop.column + shift[1]))
+            held._replace(loop=YarnLoop(held.loop.row + shift[0], held.loop.column + shift[1]))
             for held in self._needles[row][at]
         )
 
     @cached_property
-    def _needles(self) -> list[list[tuple[Held, ...]]]:
+    def _needles(self) -> list[list[tuple[HeldLoop, ...]]]:
         shape = self.graph.rows, self.graph.columns
         return [
             [self._placed(row, column) for column in range(shape[1])] for row in range(shape[0])
         ]
 
-    def _taken(self, row: int, column: int) -> list[tuple[Loop, int]]:
+    def _taken(self, row: int, column: int) -> list[tuple[YarnLoop, int]]:
         """Loops that a site takes, from the front, with the column that each comes from."""
         taken = [
             (loop, int(source))
@@ -106,8 +106,8 @@ class HeldLoops:
         ]
         return taken[::-1] if self.turn(row, column) % 2 else taken
 
-    def _handed_up(self, row: int, column: int) -> list[Loop]:
-        own, act = [Loop(row, column)], self.act(row, column)
+    def _handed_up(self, row: int, column: int) -> list[YarnLoop]:
+        own, act = [YarnLoop(row, column)], self.act(row, column)
         if act is YarnAct.THROUGH:
             return own
         held = [loop for loop, _ in self._taken(row, column)]
@@ -115,7 +115,7 @@ class HeldLoops:
             return held
         return held + own if self.behind(row, column) else own + held
 
-    def _placed(self, row: int, column: int) -> tuple[Held, ...]:
+    def _placed(self, row: int, column: int) -> tuple[HeldLoop, ...]:
         """The loops on a needle, laid side by side: old ones around young ones."""
         taken = self._taken(row, column)
         count = len(taken)
@@ -128,7 +128,7 @@ class HeldLoops:
         nearest = range(count) if self.behind(row, column) else range(count - 1, -1, -1)
         rise = sorted(nearest, key=lambda k: (-taken[k][0].row, -nearest.index(k)))
         return tuple(
-            Held(
+            HeldLoop(
                 loop,
                 count - 1 - 2 * k,
                 _ASIDE * (sources.index(source) - middle),

@@ -1,4 +1,4 @@
-"""Which yarn passes over which: what a graph asks for, and what drawn curves do.
+"""The crossings of yarn over yarn: those that a graph asks for, and those of drawn curves.
 
 Every crossing has the same place in both lists: the parts of the loops that cross, the upper one
 first. Where loops only lie one behind the other, as in decreases and tucks, the graph asks for no
@@ -18,7 +18,7 @@ import numpy as np
 from knitcore.base.arrays import Array, Indices
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
-from knitcore.yarn.loops.held_loops import HeldLoops, Loop
+from knitcore.yarn.loops.held_loops import HeldLoops, YarnLoop
 from knitcore.yarn.loops.loop_paths import FOOT_LEFT, FOOT_RIGHT, HEAD, LEG_LEFT, LEG_RIGHT, PARTS
 from knitcore.yarn.solve.clasps import crossings
 
@@ -60,7 +60,7 @@ class Crossings:
     def of(cls, graph: StitchGraph) -> Crossings:
         """List those of every site."""
         held, rows, columns = HeldLoops(graph), range(graph.rows), range(graph.columns)
-        pairs = [pair for site in product(rows, columns) for pair in _at(held, Loop(*site))]
+        pairs = [pair for site in product(rows, columns) for pair in _at(held, YarnLoop(*site))]
         pairs += [pair for row in rows for pair in _of_cables(held, row)]
         repeat = graph.rows, graph.columns
         return cls(
@@ -81,7 +81,7 @@ class Crossings:
 Pair = tuple[bool, Strand, Strand]
 
 
-def _at(held: HeldLoops, site: Loop) -> Iterator[Pair]:
+def _at(held: HeldLoops, site: YarnLoop) -> Iterator[Pair]:
     """Crossings on a needle, and of its loops with each other on their way to it."""
     act, behind, loops = held.act(*site), held.behind(*site), held.on_needle(*site)
     swapped = held.turn(*site) % 2 == 1
@@ -105,7 +105,7 @@ def _over(front: Strand, back: Strand, behind: bool) -> tuple[Strand, Strand]:
     return (front, back) if behind else (back, front)
 
 
-def _leg_at(held: HeldLoops, loop: Loop, site: Loop, left: bool) -> int:
+def _leg_at(held: HeldLoops, loop: YarnLoop, site: YarnLoop, left: bool) -> int:
     """The leg of a loop that is on the left, or right, of a needle."""
     at, swapped = loop, False
     while at != site:
@@ -114,7 +114,7 @@ def _leg_at(held: HeldLoops, loop: Loop, site: Loop, left: bool) -> int:
     return LEG_LEFT if left != swapped else LEG_RIGHT
 
 
-def _twists(held: HeldLoops, site: Loop) -> Iterator[Pair]:
+def _twists(held: HeldLoops, site: YarnLoop) -> Iterator[Pair]:
     """Crossings of legs that turn half round: each with each other one."""
     loops = sorted(held.on_needle(*site), key=lambda on: on.half_width)
     right = [Strand(*on.loop, _leg_at(held, on.loop, site, True)) for on in loops]
@@ -130,9 +130,9 @@ def _of_cables(held: HeldLoops, row: int) -> Iterator[Pair]:
         if held.graph.sources(row, first)[0] < held.graph.sources(row, then)[0]:
             continue
         in_front = held.passing(row, first) > 0
-        for one, other in product(held.on_needle(row, first), held.on_needle(row, then)):
+        for left, right in product(held.on_needle(row, first), held.on_needle(row, then)):
             for a, b in product(_LEGS, repeat=2):
-                pair = Strand(*one.loop, a), Strand(*other.loop, b)
+                pair = Strand(*left.loop, a), Strand(*right.loop, b)
                 yield (False, *_over(*pair, in_front))
 
 

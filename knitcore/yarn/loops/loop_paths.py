@@ -17,7 +17,7 @@ import scipy
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.chart.stitch_kinds import YarnAct
-from knitcore.yarn.loops.held_loops import INNER, Held, HeldLoops, Loop
+from knitcore.yarn.loops.held_loops import INNER, HeldLoop, HeldLoops, YarnLoop
 
 FOOT_LEFT, LEG_LEFT, HEAD, LEG_RIGHT, FOOT_RIGHT = range(5)
 """Parts of a loop; the yarn of a slipped stitch is a left foot."""
@@ -129,7 +129,7 @@ class LoopPaths:
 
     def _leg(self, row: int, column: int, side: int) -> list[Point]:
         """Points of one leg of a loop, from its foot up; the last two are of the head."""
-        loop, at, base = Loop(row, column), Loop(row, column), self.height(row)
+        loop, at, base = YarnLoop(row, column), YarnLoop(row, column), self.height(row)
         x, z = column + side * INNER, self._feet(row, column)
         points: list[Point] = []
         if self.held.act(row, column) is YarnAct.THROUGH:
@@ -154,7 +154,7 @@ class LoopPaths:
         level = at.column + held.aside + _ROUND * side * held.half_width
         return [*points, (x, top - _CORNER, z), (level, top, z)]
 
-    def _passing(self, taker: Loop, held: Held, side: int) -> float:
+    def _passing(self, taker: YarnLoop, held: HeldLoop, side: int) -> float:
         """Layer of a leg on its way to its taker's needle."""
         turn = self.held.turn(*taker)
         if turn % 2 == 0:

@@ -1,9 +1,13 @@
-"""Charts of any stitches for tests: examples, and random ones that balance."""
+"""Charts of any stitches for tests: examples, and random ones that balance; and a yarn."""
 
 from hypothesis import strategies as st
 
 from knitcore.chart.stitch_kinds import STITCHES, StitchType
 from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.model.yarn_model import YarnModel
+
+ACRYLIC, LOOP_MM = YarnModel(0.046, 6e-4, 2.4, 0.74, 0.335), 11.3
+"""The library's yarn of stockinette, and its loop length."""
 
 EXAMPLES = {
     "stockinette": "KK;KK",
@@ -26,7 +30,7 @@ EXAMPLES = {
     "cable 3/3": "[3/3R];KKKKKK",
     "held and twisted": "BKKK;TKKK;TKKK;KKKK",
 }
-"""Repeats of the feasibility study and a few harder ones."""
+"""Repeats of all kinds of stitches."""
 
 _KINDS = [stitch for stitch in STITCHES if stitch.width <= 4]
 _BY_CODE = {stitch.code: stitch for stitch in STITCHES}

@@ -22,8 +22,8 @@ COUNTS = {
 
 @pytest.mark.parametrize("name", COUNTS)
 def test_the_crossings_of_a_repeat_are_counted(name: str) -> None:
-    asked = Crossings.of(SymbolChart.parse(EXAMPLES[name]).graph)
-    assert sum(asked.exact.values()) == COUNTS[name]
+    needed = Crossings.of(SymbolChart.parse(EXAMPLES[name]).graph)
+    assert sum(needed.exact.values()) == COUNTS[name]
 
 
 @pytest.mark.parametrize(
