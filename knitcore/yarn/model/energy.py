@@ -146,6 +146,11 @@ class CellEnergy:
         """Mean loop length."""
         return float(np.mean(self.loop_length_mm))
 
+    @property
+    def stitch_of_yarn_mm(self) -> float:
+        """Length of yarn that counts as one stitch where a yarn does not touch itself."""
+        return self.mean_loop_mm
+
     @cached_property
     def unit(self) -> float:
         """B / L, the scale of energies, N·mm."""
@@ -235,7 +240,7 @@ class CellEnergy:
     ) -> tuple[Pairs, Ints]:  # fmt: skip
         cell = self.cell
         sizes = float(state[-2]), float(state[-1])
-        exclusion = EXCLUSION_RADII * self.yarn.radius_mm / self.mean_loop_mm
+        exclusion = EXCLUSION_RADII * self.yarn.radius_mm / self.stitch_of_yarn_mm
         return neighbour_pairs(
             curve, cell.place, sizes, (cell.rows, cell.wales), cell.mirror, reach, exclusion,
             moving, cut,

@@ -10,6 +10,7 @@ rate. Rolling of one strand over the other is free.
 """
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +23,7 @@ from knitcore.chart.stitch_chart import check_stitches
 from knitcore.yarn.kernels.friction_kernels import Sliding, normal_forces, slides
 from knitcore.yarn.kernels.structures import Pairs
 from knitcore.yarn.model.energy import CellEnergy
-from knitcore.yarn.solve.newton import Options, minimise
+from knitcore.yarn.solve.newton import Minimum, Options, minimise
 from knitcore.yarn.solve.search import check_reached
 from knitcore.yarn.solve.splines import RelaxedRepeat, check_unheld, relaxed_repeat
 
@@ -125,22 +126,47 @@ def rubbed(
     cell = last.cell
     energy = cell.energy
     small = cell.cell.stitches <= 4
-    state, tension, evaluations = cell.state, cell.tension_n, 0
-    for _ in range(_NORMAL_FORCES):
-        sliding, pairs = _sliding(energy, cell.state, state, last.rubbing, coefficient)
-        minimum = minimise(
-            replace(energy, sliding=sliding), state, tension=tension, fixed=fixed, target=target,
-            options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancelled=cancelled,
-        )  # fmt: skip
-        check_reached(energy, minimum)
-        state, tension = minimum.state, minimum.tension
-        evaluations += minimum.evaluations
-    held, lost = _held(energy, sliding, cell.state, state)
+    minimum, rubbing, lost = rub(
+        energy, cell.state, cell.tension_n, last.rubbing, coefficient, check=check_reached,
+        fixed=fixed, target=target, cancelled=cancelled,
+        options=Options(tolerance=1e-8 if small else 1e-6, iterations=80),
+    )  # fmt: skip
     shown = relaxed_repeat(
         cell.chart, energy, cell.branch, minimum,
-        seconds=time.process_time() - began, evaluations=evaluations,
+        seconds=time.process_time() - began, evaluations=minimum.evaluations,
     )  # fmt: skip
-    return RubbedCell(shown, Rubbing(pairs, held), last.lost_n_mm + lost / cell.cell.stitches)
+    return RubbedCell(shown, rubbing, last.lost_n_mm + lost / cell.cell.stitches)
+
+
+def rub(
+    energy: CellEnergy, begin: Array, tension: Array, before: Rubbing, coefficient: float, *,
+    options: Options, check: Callable[[CellEnergy, Minimum], None],
+    fixed: tuple[int, ...] = (), target: Array | None = None, cancelled: Cancelled | None = None,
+) -> tuple[Minimum, Rubbing, float]:  # fmt: skip
+    """One small step with friction: where it ends, the forces that it holds, the work it took.
+
+    Parameters
+    ----------
+    energy : of the cell, as it is in this step.
+    begin, tension, before : state, tensions and friction forces where it begins.
+    check : refuses a state on the way.
+
+    Returns
+    -------
+    Its end, the friction forces there, and the work against friction in the whole cell, N·mm.
+    """
+    state, evaluations = begin, 0
+    for _ in range(_NORMAL_FORCES):
+        sliding, pairs = _sliding(energy, begin, state, before, coefficient)
+        minimum = minimise(
+            replace(energy, sliding=sliding), state, tension=tension, fixed=fixed, target=target,
+            options=options, cancelled=cancelled,
+        )  # fmt: skip
+        check(energy, minimum)
+        state, tension = minimum.state, minimum.tension
+        evaluations += minimum.evaluations
+    held, lost = _held(energy, sliding, begin, state)
+    return replace(minimum, evaluations=evaluations), Rubbing(pairs, held), lost
 
 
 def _sliding(

@@ -3,7 +3,9 @@
 import pytest
 
 from knitcore import InputError, StitchChart, material, relax
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.yarn.library.yarns import yarn_for
+from knitcore.yarn.loops.relaxed_stitches import RelaxedStitches
 
 
 def test_a_material_gives_yarn_and_loop_length() -> None:
@@ -25,3 +27,14 @@ def test_what_is_missing_is_named() -> None:
         relax("K", used.yarn)
     with pytest.raises(InputError, match="is of type float"):
         relax("K", 10.5)
+
+
+def test_a_chart_of_other_stitches_takes_their_path() -> None:
+    mesh = relax(SymbolChart.parse("O/;KK"), "acrylic", history="agitated")
+    assert isinstance(mesh, RelaxedStitches)
+    assert "1.2 to 1.35" in mesh.notes[0]
+    assert mesh.to_dict()["pattern"] == "O/;KK"
+    plain = relax(SymbolChart.parse("K"), "acrylic", branch="mirrored")
+    assert plain.energy_n_mm == relax("K", "acrylic", branch="mirrored").energy_n_mm
+    with pytest.raises(InputError, match="branch: is for charts of knits and purls"):
+        relax(SymbolChart.parse("O/;KK"), "acrylic", branch="free")

@@ -1,0 +1,147 @@
+"""The loops that every needle holds, their order, and where they lie side by side.
+
+A row has two levels. On the *nodes* a new loop meets those that it is pulled through, and held
+loops meet the yarn that passes them. *Between* a row and the next every loop changes over to the
+column of the site that takes it, some in front of others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from knitcore.base.arrays import Indices
+from knitcore.chart.stitch_graph import StitchGraph
+from knitcore.chart.stitch_kinds import YarnAct
+
+INNER = 0.14
+"""Half the width of a new loop where it is pulled through others, in wales."""
+_OUTER, _WIDEST = 0.29, 0.40
+"""Half the width of the loops that are held, the youngest and the oldest, in wales."""
+_ASIDE = 0.05
+"""Distance between loops of neighbouring columns on one needle, in wales."""
+
+
+class YarnLoop(NamedTuple):
+    """A loop of yarn, named by the site that made it, in any copy of the repeat."""
+
+    row: int
+    column: int
+
+
+class HeldLoop(NamedTuple):
+    """A loop on a needle.
+
+    Attributes
+    ----------
+    loop : the loop.
+    layer : its place from the front, between 1 - n and n - 1 in steps of 2 for n loops.
+    aside : how far its middle lies to the right of the needle, in wales.
+    half_width : half its width, in wales.
+    rise : place of its head among the others', 0 the lowest.
+    """
+
+    loop: YarnLoop
+    layer: int
+    aside: float
+    half_width: float
+    rise: int
+
+
+@dataclass(frozen=True, eq=False)
+class HeldLoops:
+    """The loops on all needles of a graph."""
+
+    graph: StitchGraph
+
+    @cached_property
+    def taker(self) -> Indices:
+        """Column of the site above that takes a site's loops, (rows, columns)."""
+        return self.graph.taker()
+
+    def taken_by(self, row: int, column: int) -> YarnLoop:
+        """The site that takes what a site hands up."""
+        copy, at = divmod(column, self.graph.columns)
+        taker = int(self.taker[row % self.graph.rows, at])
+        return YarnLoop(row + 1, taker + copy * self.graph.columns)
+
+    def act(self, row: int, column: int) -> YarnAct:
+        """The act of a site."""
+        return YarnAct(self.graph.act[row % self.graph.rows, column % self.graph.columns])
+
+    def turn(self, row: int, column: int) -> int:
+        """Half turns of what a site takes."""
+        return int(self.graph.turn[row % self.graph.rows, column % self.graph.columns])
+
+    def behind(self, row: int, column: int) -> bool:
+        """Tell whether a site's yarn comes from behind the loops that it holds."""
+        at = row % self.graph.rows, column % self.graph.columns
+        missed = self.graph.act[at] == YarnAct.MISS
+        return not (self.graph.front[at] if missed else self.graph.purl[at])
+
+    def on_needle(self, row: int, column: int) -> tuple[HeldLoop, ...]:
+        """The loops that a site takes, the front of the fabric first."""
+        copy, at = divmod(column, self.graph.columns)
+        row_copy, row = divmod(row, self.graph.rows)
+        shift = row_copy * self.graph.rows, copy * self.graph.columns
+        return tuple(
+            held._replace(loop=YarnLoop(held.loop.row + shift[0], held.loop.column + shift[1]))
+            for held in self._needles[row][at]
+        )
+
+    @cached_property
+    def _needles(self) -> list[list[tuple[HeldLoop, ...]]]:
+        shape = self.graph.rows, self.graph.columns
+        return [
+            [self._placed(row, column) for column in range(shape[1])] for row in range(shape[0])
+        ]
+
+    def _taken(self, row: int, column: int) -> list[tuple[YarnLoop, int]]:
+        """Loops that a site takes, from the front, with the column that each comes from."""
+        taken = [
+            (loop, int(source))
+            for source in self.graph.sources(row, column)
+            for loop in self._handed_up(row - 1, int(source))
+        ]
+        return taken[::-1] if self.turn(row, column) % 2 else taken
+
+    def _handed_up(self, row: int, column: int) -> list[YarnLoop]:
+        own, act = [YarnLoop(row, column)], self.act(row, column)
+        if act is YarnAct.THROUGH:
+            return own
+        held = [loop for loop, _ in self._taken(row, column)]
+        if act is YarnAct.MISS:
+            return held
+        return held + own if self.behind(row, column) else own + held
+
+    def _placed(self, row: int, column: int) -> tuple[HeldLoop, ...]:
+        """The loops on a needle, laid side by side: old ones around young ones."""
+        taken = self._taken(row, column)
+        count = len(taken)
+        if not count:
+            return ()
+        sources = sorted({source for _, source in taken})
+        rows = sorted({loop.row for loop, _ in taken}, reverse=True)
+        middle, wider = 0.5 * (len(sources) - 1), (_WIDEST - _OUTER) / max(len(rows) - 1, 1)
+        # the head nearest to the new loop's legs is the highest of those of one age
+        nearest = range(count) if self.behind(row, column) else range(count - 1, -1, -1)
+        rise = sorted(nearest, key=lambda k: (-taken[k][0].row, -nearest.index(k)))
+        return tuple(
+            HeldLoop(
+                loop,
+                count - 1 - 2 * k,
+                _ASIDE * (sources.index(source) - middle),
+                _OUTER + wider * rows.index(loop.row),
+                rise.index(k),
+            )
+            for k, (loop, source) in enumerate(taken)
+        )
+
+    def depth(self, row: int, column: int) -> int:
+        """Layer of what lies behind, or in front of, all loops on a needle."""
+        return len(self.on_needle(row, column))
+
+    def passing(self, row: int, column: int) -> int:
+        """1 where the loops that a site takes pass in front of others on their way, -1 behind."""
+        return int(self.graph.layers(row, column)[:1].sum())

@@ -1,0 +1,264 @@
+"""A repeat of any stitches at rest: drawn, taken down, and let go after a named history."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from knitcore.base.arrays import Array
+from knitcore.base.choice import Choice
+from knitcore.base.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.chart.result import Result
+from knitcore.chart.stitch_chart import check_stitches
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.stitch_energy import StitchEnergy, YarnPerAct
+from knitcore.yarn.loops.take_down import GRID, TakeDown, room_for_yarn
+from knitcore.yarn.model.cell import YarnCell
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
+from knitcore.yarn.model.input_checks import check_loop
+from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.model.tiling import centre_lines, refined_state
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.solve.clasps import clasp_code, same_clasps
+from knitcore.yarn.solve.friction import Rubbing, check_coefficient, rub
+from knitcore.yarn.solve.newton import Minimum, Options, minimise
+from knitcore.yarn.solve.topology import clearance_at
+
+MAX_STITCHES = 36
+"""Largest repeat."""
+BLOCKING_N_PER_MM = 0.03
+"""Pull both ways of a blocked cloth."""
+FRICTION = 0.26
+"""Coefficient of friction between yarns unless another is given."""
+_RELEASE = 6
+"""Steps in which a pull is let go."""
+_SETTLED = Options(tolerance=1e-6, slack=1e-6, iterations=150)
+_RUBBED = Options(tolerance=1e-5, slack=1e-5, iterations=60)
+_COMPARED = 192
+"""Samples of a stitch by which two resolutions are compared."""
+CAUTION = (
+    "This is one history of many, and such a cloth rests differently after another one. Sizes of "
+    "cells with lace, cables, slipped or tucked stitches miss measured cloth by a factor of 1.2 to "
+    "1.35: take them as a picture of the yarn, not as a prediction."
+)
+
+
+class StitchHistory(Choice):
+    """The treatment of a cloth of any stitches before it came to rest."""
+
+    AGITATED = "agitated"
+    """Shaken until no friction is left; lace and cables crumple."""
+    KNITTED = "as-knitted"
+    """Taken down as on the machine and let go, with friction."""
+    BLOCKED = "blocked"
+    """Pulled equally both ways, as on a blocking board, and let go, with friction."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RelaxedStitches(Result):
+    """A relaxed repeat of any stitches.
+
+    Attributes
+    ----------
+    chart : the repeat, at least two stitches each way.
+    yarn : the yarn.
+    loop_lengths_mm : (rows,) yarn per site of each row, bottom first.
+    history, friction : how it came to rest; no friction where it was agitated.
+    cell_course_mm, cell_wale_mm : width of a wale and height of a row, mm.
+    thickness_mm : from the lowest to the highest yarn.
+    energy_n_mm : energy of one site, N·mm.
+    bending_share : share of bending in it.
+    crossings : crossings of the first shape that the chart asks for. All steps of the yarn from
+        there are certified, so that they are kept.
+    layered : crossings of loops that lie behind each other, beyond these.
+    min_distance_mm : smallest distance of centre lines.
+    seconds : CPU time, s.
+    converged : whether the solver reached its tolerance.
+    centre_lines : (rows, points, 3) of the yarn, mm, once across the repeat, bottom row first.
+    notes : remarks for the user.
+    """
+
+    chart: SymbolChart
+    yarn: YarnModel
+    loop_lengths_mm: Array
+    history: StitchHistory
+    friction: float | None
+    cell_course_mm: float
+    cell_wale_mm: float
+    thickness_mm: float
+    energy_n_mm: float
+    bending_share: float
+    crossings: int
+    layered: int
+    min_distance_mm: float
+    seconds: float
+    converged: bool
+    centre_lines: Array
+    notes: tuple[str, ...] = (CAUTION,)
+
+    also_listed: ClassVar = ("pattern",)
+
+    @property
+    def pattern(self) -> str:
+        """The repeat in one line."""
+        return self.chart.key
+
+    def write(self, path: Path | str) -> None:
+        """Write the yarn of one repeat by the file's suffix: ``.npz`` or ``.vtu``.
+
+        The latter has a line for every row, with the row at every point of it.
+
+        Raises
+        ------
+        InputError
+            If the suffix is neither of these.
+        """
+        target, (rows, count, _) = Path(path), self.centre_lines.shape
+        if target.suffix.lower() == ".npz":
+            size = self.cell_course_mm, self.cell_wale_mm
+            np.savez_compressed(
+                target, centre_lines_mm=self.centre_lines, cell_mm=size, allow_pickle=False
+            )
+        elif target.suffix.lower() == ".vtu":
+            import meshio
+
+            place = np.arange(rows * count).reshape(rows, count)
+            pairs = np.stack([place[:, :-1], place[:, 1:]], axis=-1).reshape(-1, 2)
+            row = {"row": np.repeat(np.arange(rows), count)}
+            points = self.centre_lines.reshape(-1, 3)
+            meshio.Mesh(points, [("line", pairs)], point_data=row).write(target, file_format="vtu")
+        else:
+            raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz or .vtu.")
+
+
+def relax_stitches(
+    chart: SymbolChart,
+    yarn: YarnModel,
+    loop_length_mm: float,
+    *,
+    history: StitchHistory | str = StitchHistory.BLOCKED,
+    friction: float = FRICTION,
+    per_act: YarnPerAct | None = None,
+    convention: Convention | str = Convention.PUBLISHED,
+    cancelled: Cancelled | None = None,
+) -> RelaxedStitches:
+    """Relax a repeat of any balanced stitches.
+
+    Parameters
+    ----------
+    chart : the repeat, at most 36 stitches.
+    yarn : the yarn.
+    loop_length_mm : yarn of a knit.
+    history : what the cloth went through.
+    friction : coefficient of friction between yarns; not used where it is agitated.
+    per_act : yarn of other stitches, relative to a knit's.
+    convention : factors of the energy.
+    cancelled : called before every step; True stops with CancelledError.
+
+    Raises
+    ------
+    InputError
+        If the repeat is too large, or a value is out of range.
+    ConvergenceError
+        If the yarn cannot be drawn, or locks; the message has the remedy.
+    CancelledError
+        If ``cancelled`` says so.
+    """
+    kind = StitchHistory.parse(history)
+    check_coefficient(friction)
+    check_loop(yarn, loop_length_mm)
+    whole = chart.tile(2 if chart.rows == 1 else 1, 2 if chart.columns == 1 else 1)
+    check_stitches(whole.rows * whole.columns, MAX_STITCHES, "its repeat")
+    clock = time.process_time()
+    graph = whole.graph
+    drawn = room_for_yarn(graph, yarn, loop_length_mm)
+    lengths = loop_length_mm * (per_act or YarnPerAct()).of_rows(graph)
+    take_down = TakeDown(yarn, Convention.parse(convention), lengths, cancelled)
+    taken, minimum = take_down(drawn)
+    energy, state = _coarser(taken, minimum)
+    energy, minimum = _at_rest(energy, state, minimum.tension, kind, friction, cancelled)
+    cell, state = energy.cell, minimum.state
+    if not same_clasps(_code(drawn.cell, drawn.state), _code(cell, state)):
+        raise UnravelledError("The stitches come undone on the way to rest.")
+    lines = centre_lines(cell, state, cell.rows, cell.wales)
+    return RelaxedStitches(
+        chart=whole,
+        yarn=yarn,
+        loop_lengths_mm=lengths,
+        history=kind,
+        friction=None if kind is StitchHistory.AGITATED else friction,
+        cell_course_mm=float(state[-2]),
+        cell_wale_mm=float(state[-1]),
+        thickness_mm=float(np.ptp(lines[..., 2])) + 2.0 * yarn.radius_mm,
+        energy_n_mm=minimum.terms.energy / cell.stitches,
+        bending_share=minimum.terms.rod / minimum.terms.energy,
+        crossings=drawn.exact,
+        layered=sum(drawn.crossings.values()) - drawn.exact,
+        min_distance_mm=minimum.min_distance_mm,
+        seconds=time.process_time() - clock,
+        converged=minimum.converged,
+        centre_lines=lines,
+    )
+
+
+def _at_rest(
+    energy: StitchEnergy, state: Array, tension: Array, history: StitchHistory, friction: float,
+    cancelled: Cancelled | None,
+) -> tuple[StitchEnergy, Minimum]:  # fmt: skip
+    """The state after a history, from that under the take-down."""
+    pull = energy.pull_n
+    if history is StitchHistory.AGITATED:
+        pull = (0.0, 0.0)
+    if history is StitchHistory.BLOCKED:
+        both = BLOCKING_N_PER_MM * energy.cell.stitches
+        pull = both * float(state[-1]), both * float(state[-2])
+    energy = replace(energy, pull_n=pull, spacing_per_bending=SPACING_PER_BENDING)
+    minimum = minimise(energy, state, tension=tension, options=_SETTLED, cancelled=cancelled)
+    if history is StitchHistory.AGITATED:
+        return energy, minimum
+    rubbing = Rubbing(np.zeros(0, np.int64), np.zeros((0, 2)))
+    for left in range(_RELEASE - 1, -1, -1):
+        energy = replace(energy, pull_n=(pull[0] * left / _RELEASE, pull[1] * left / _RELEASE))
+        minimum, rubbing, _ = rub(
+            energy, minimum.state, minimum.tension, rubbing, friction, options=_RUBBED,
+            check=_check_apart, cancelled=cancelled,
+        )  # fmt: skip
+    return energy, minimum
+
+
+def _check_apart(energy: CellEnergy, minimum: Minimum) -> None:
+    if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
+        raise ConvergenceError("The yarn locks while the cloth is let go. Give longer loops.")
+
+
+def _coarser(energy: StitchEnergy, minimum: Minimum) -> tuple[StitchEnergy, Array]:
+    """The state on the usual grid, if no strand moves by half of what keeps it from another."""
+    cell, state = energy.cell, minimum.state
+    if cell.grid.controls <= GRID.controls:
+        return energy, state
+    usual = replace(cell, grid=GRID)
+    coarse = refined_state(cell, state, usual)
+    coarser = replace(energy, cell=usual)
+    moved = np.linalg.norm(_compared(cell, state) - _compared(usual, coarse), axis=2).max()
+    apart = clearance_at(coarser, coarse).min_distance_mm
+    if moved > 0.45 * minimum.min_distance_mm or apart <= 2.0 * energy.yarn.core_radius_mm:
+        return energy, state
+    return coarser, coarse
+
+
+def _compared(cell: YarnCell, state: Array) -> Array:
+    """Centre lines at places that do not depend on the resolution."""
+    grid = cell.grid
+    samples = _COMPARED // grid.controls
+    dense = replace(cell, grid=SplineGrid(grid.controls, samples))
+    return centre_lines(dense, state, cell.rows, cell.wales)
+
+
+def _code(cell: YarnCell, state: Array) -> Array:
+    lines = centre_lines(cell, state, cell.rows, cell.wales)
+    return clasp_code(lines, cell.wales * float(state[-2]), cell.rows * float(state[-1]))

@@ -1,0 +1,84 @@
+"""The energy of a repeat of any stitches: yarn by acts, and pulls on the cloth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from knitcore.base.arrays import Array
+from knitcore.base.bounds import check_range
+from knitcore.chart.stitch_graph import StitchGraph
+from knitcore.chart.stitch_kinds import YarnAct
+from knitcore.yarn.kernels.structures import Ints, Pairs
+from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
+
+
+@dataclass(frozen=True)
+class YarnPerAct:
+    """Yarn that a site takes, as a part of a knit's.
+
+    The value of yarn overs follows from the weights of lace swatches; the others are guesses.
+
+    Parameters
+    ----------
+    yarn_over, tuck : of a loop that is laid over the needle.
+    slip : of the float that passes a slipped stitch.
+    crossing : of a loop that changes places with others in a cable.
+    """
+
+    yarn_over: float = 1.0
+    tuck: float = 0.75
+    slip: float = 0.27
+    crossing: float = 1.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            check_range(field.name, getattr(self, field.name), 0.1, 5)
+
+    def of_rows(self, graph: StitchGraph) -> Array:
+        """(rows,) mean over the sites of each row."""
+        sources = np.diff(graph.first, axis=1)
+        passing = np.zeros(graph.act.shape, dtype=bool)
+        row, column = np.nonzero(sources)
+        passing[row, column] = graph.layer[graph.first[row, column]] != 0
+        over = np.where(sources > 0, self.tuck, self.yarn_over)
+        through = np.where(passing, self.crossing, 1.0)
+        parts = np.choose(graph.act, [through, over, self.slip])
+        assert list(YarnAct) == [0, 1, 2]  # noqa: S101 - the order of the choices
+        return np.asarray(parts.mean(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class StitchEnergy(CellEnergy):
+    """The energy of a repeat of any stitches.
+
+    Parameters
+    ----------
+    pull_n : force along the course and along the wale that stretches a stitch of the cell, N times
+        the number of stitches.
+    """
+
+    pull_n: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def stitch_of_yarn_mm(self) -> float:
+        """The mean loop length of the course that has the least: rows of floats are short."""
+        return float(self.loop_length_mm.min())
+
+    def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
+        """Parts of the energy; the work of the pulls counts with the spacing."""
+        terms = super().value(state, curve, pairs)
+        work = self.pull_n[0] * state[-2] + self.pull_n[1] * state[-1]
+        return replace(terms, spacing=terms.spacing - float(work))
+
+    def derivatives(
+        self, state: Array, curve: Array, pairs: Pairs, start: Ints, tension: Array,
+        *, hessian: bool = True, sparse: bool = False, lengths: bool = True,
+    ) -> Slope:  # fmt: skip
+        """Gradient and Hessian of the Lagrangian, with the pulls."""
+        slope = super().derivatives(
+            state, curve, pairs, start, tension, hessian=hessian, sparse=sparse, lengths=lengths
+        )
+        slope.gradient[-2:] -= self.pull_n
+        return slope

@@ -1,0 +1,143 @@
+"""From the first shape to the prescribed yarn: the rows are drawn tight under a pull.
+
+The first shape has far more yarn than the cloth. As on a machine, the cloth hangs from its needles
+under a take-down while the yarn of every row is drawn in by small parts; steps that lock are taken
+back and made smaller, and where that does not help the cloth is pulled more gently. Every step of
+the yarn is certified, so the crossings stay those of the first shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from knitcore.base.arrays import Array
+from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError
+from knitcore.chart.stitch_graph import StitchGraph
+from knitcore.yarn.loops.drawn_yarn import DrawnYarn, drawn_yarn
+from knitcore.yarn.loops.stitch_energy import StitchEnergy
+from knitcore.yarn.model.cell import YarnCell
+from knitcore.yarn.model.conventions import Convention
+from knitcore.yarn.model.energy import STIFF_SPACING_PER_BENDING
+from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.model.yarn_model import YarnModel
+from knitcore.yarn.solve.newton import Minimum, Options, minimise
+from knitcore.yarn.solve.topology import clearance_at
+
+PULLS_N_PER_MM = 0.03, 0.01
+"""Take-down along the wale; the next is tried where the yarn locks."""
+ACROSS = 1.0
+"""Pull along the course over that along the wale: the rollers keep the cloth spread."""
+_COURSE_PER_LOOP, _WALE_PER_LOOP = 0.27, 0.19
+"""Size of a stitch over its loop length, by which pulls per mm become forces."""
+_SCALES = tuple(0.45 * 1.2**k for k in range(8))
+"""Widths of a drawn wale over the loop length: the least that leaves room for the cores."""
+_LAYER_RADII = 1.8
+_ROOM = 1.1
+"""Least distance of strands in the first shape, in diameters of the core."""
+_STEP = 0.2
+"""First part of the way, in logarithms of the length, and least that is tried."""
+_LEAST_STEP = 0.015
+_OVERLONG = 0.02
+"""Excess of a row's yarn, in loop lengths, with which a stage still counts."""
+_STAGE = Options(tolerance=1e-3, slack=1e-2, iterations=6)
+GRID = SplineGrid(16, 3)
+"""Resolution of the relaxed shape, if it is fine enough."""
+_UNEVEN = 2.0
+"""Samples in a diameter of the core; certified steps need one and a half, evenly spread."""
+_MOST = 10
+"""Most samples per control point."""
+
+
+def room_for_yarn(graph: StitchGraph, yarn: YarnModel, loop_length_mm: float) -> DrawnYarn:
+    """Draw the first shape so large that the yarn's core has room.
+
+    Raises
+    ------
+    ConvergenceError
+        If it cannot be drawn.
+    """
+    for scale in _SCALES:
+        size = scale * loop_length_mm
+        drawn = drawn_yarn(graph, size, size, _LAYER_RADII * yarn.radius_mm)
+        energy = StitchEnergy(drawn.cell, yarn, drawn.loop_lengths_mm, Convention.PUBLISHED)
+        if clearance_at(energy, drawn.state).min_distance_mm > 2.0 * _ROOM * yarn.core_radius_mm:
+            return drawn
+    raise ConvergenceError("The yarn is too thick for this chart. Give a thinner core.")
+
+
+@dataclass(frozen=True, eq=False)
+class TakeDown:
+    """The yarn of a repeat being drawn in.
+
+    Parameters
+    ----------
+    yarn, convention : of the energy.
+    goal_mm : (rows,) mean loop length of each row in the cloth.
+    """
+
+    yarn: YarnModel
+    convention: Convention
+    goal_mm: Array
+    cancelled: Cancelled | None = None
+
+    def __call__(self, drawn: DrawnYarn) -> tuple[StitchEnergy, Minimum]:
+        """The state with the prescribed yarn, under the take-down.
+
+        Raises
+        ------
+        ConvergenceError
+            If the yarn locks on the way whatever the pull.
+        """
+        for pull in PULLS_N_PER_MM:
+            try:
+                return self._drawn_in(drawn, pull)
+            except (ConvergenceError, UnravelledError):
+                continue
+        raise ConvergenceError(
+            "The yarn locks while it is drawn in: a crossing has too little yarn. Give its loops "
+            "more yarn (crossing), longer loops, or a plain row between the crossings."
+        )
+
+    def energy(self, cell: YarnCell, lengths_mm: Array, pull_n_per_mm: float) -> StitchEnergy:
+        """The energy under a take-down; long loops are soft, so that it pulls them less."""
+        larger = float(lengths_mm.mean() / self.goal_mm.mean())
+        force = pull_n_per_mm / larger**2 * cell.stitches * float(self.goal_mm.mean())
+        pulls = ACROSS * _WALE_PER_LOOP * force, _COURSE_PER_LOOP * force
+        samples = _UNEVEN * float(lengths_mm.max()) / (2.0 * self.yarn.core_radius_mm)
+        per_span = int(np.clip(np.ceil(samples / cell.grid.controls), GRID.per_span, _MOST))
+        sampled = replace(cell, grid=SplineGrid(cell.grid.controls, per_span))
+        return StitchEnergy(
+            sampled, self.yarn, lengths_mm, self.convention,
+            spacing_per_bending=STIFF_SPACING_PER_BENDING, pull_n=pulls,
+        )  # fmt: skip
+
+    def _drawn_in(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum]:
+        begin = drawn.loop_lengths_mm
+        whole = float(np.log(begin / self.goal_mm).max())
+        energy = self.energy(drawn.cell, begin, pull)
+        last = self._stage(energy, drawn.state, None)
+        done, step = 0.0, _STEP / whole
+        while done < 1.0:
+            part = min(1.0, done + step)
+            nearer = self.energy(energy.cell, begin ** (1.0 - part) * self.goal_mm**part, pull)
+            try:
+                minimum = self._stage(nearer, last.state, last.tension)
+            except (ConvergenceError, UnravelledError):
+                step *= 0.5
+                if step * whole < _LEAST_STEP:
+                    raise
+                continue
+            energy, last, done = nearer, minimum, part
+            step = min(1.3 * step, _STEP / whole)
+        return energy, last
+
+    def _stage(self, energy: StitchEnergy, state: Array, tension: Array | None) -> Minimum:
+        minimum = minimise(energy, state, tension=tension, options=_STAGE, cancelled=self.cancelled)
+        lengths = minimum.terms.excess_mm / energy.cell.wales
+        if np.abs(lengths).max() > _OVERLONG * energy.mean_loop_mm:
+            raise ConvergenceError("too little yarn")
+        if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
+            raise ConvergenceError("cores overlap")
+        return minimum

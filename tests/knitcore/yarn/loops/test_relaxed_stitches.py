@@ -1,0 +1,72 @@
+"""Repeats of any stitches at rest."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from knitcore.base.errors import ConvergenceError, InputError
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.relaxed_stitches import RelaxedStitches, StitchHistory, relax_stitches
+from knitcore.yarn.loops.stitch_energy import YarnPerAct
+from knitcore.yarn.study.relax import relax
+from tests.knitcore.yarn.random_charts import ACRYLIC, LOOP_MM
+
+
+def at_rest(
+    text: str, history: str = StitchHistory.AGITATED, per_act: YarnPerAct | None = None
+) -> RelaxedStitches:
+    chart = SymbolChart.parse(text)
+    return relax_stitches(chart, ACRYLIC, LOOP_MM, history=history, per_act=per_act)
+
+
+def sizes(cell: RelaxedStitches) -> tuple[float, float]:
+    return cell.cell_course_mm, cell.cell_wale_mm
+
+
+def test_plain_stitches_come_to_rest_as_on_their_own_path() -> None:
+    cell = at_rest("K")
+    plain = relax(SymbolChart.parse("K").plain, ACRYLIC, LOOP_MM, branch="free")
+    assert np.allclose(sizes(cell), (plain.cell_course_mm, plain.cell_wale_mm), rtol=2e-3)
+    assert np.isclose(cell.energy_n_mm, plain.energy_n_mm, rtol=2e-3)
+    assert cell.converged
+    assert cell.friction is None
+
+
+def test_mirror_images_rest_alike(tmp_path: Path) -> None:
+    left, right = (at_rest(text, StitchHistory.BLOCKED) for text in ("O/;KK", "\\O;KK"))
+    assert np.allclose(sizes(left), sizes(right), rtol=1e-2)
+    assert (left.crossings, left.layered) == (16, 2)
+    right.write(tmp_path / "mesh.vtu")
+    assert len(meshio.read(tmp_path / "mesh.vtu").points) == right.centre_lines[..., 0].size
+
+
+def test_blocked_cloth_rests_flatter_than_agitated_cloth() -> None:
+    blocked, agitated = (at_rest("O/;KK", of) for of in ("blocked", "agitated"))
+    assert blocked.thickness_mm < agitated.thickness_mm
+    assert np.prod(sizes(blocked)) > np.prod(sizes(agitated))
+
+
+def test_slipped_stitches_and_twists_draw_the_cloth_in() -> None:
+    plain = at_rest("K")
+    slipped, twisted = at_rest("VK;KK"), at_rest("B")
+    assert slipped.cell_wale_mm < 0.9 * plain.cell_wale_mm
+    assert twisted.cell_course_mm < 0.95 * plain.cell_course_mm
+
+
+def test_a_large_repeat_is_refused() -> None:
+    with pytest.raises(InputError, match="36"):
+        at_rest("O/KKKKKK;KKKKKKKK;KKKKKKKK;KKKKKKKK;KKKKKKKK")
+
+
+@pytest.mark.slow
+def test_yarn_that_locks_is_refused_with_a_remedy() -> None:
+    with pytest.raises(ConvergenceError, match="plain row between"):
+        at_rest("[1/1R];[1/1L]", per_act=YarnPerAct(crossing=0.3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", ["[2/2L];KKKK;KKKK;KKKK", "//OOOO\\\\K;KKKKKKKKK", "O^OK;KKKK"])
+def test_cables_and_wide_lace_come_to_rest(text: str) -> None:
+    assert at_rest(text, StitchHistory.BLOCKED).converged
