@@ -67,14 +67,17 @@ serve:           ## Run the tool and print its address
 	@nice -n 19 $(MAKE) --no-print-directory --silent $(VENV)/.compiled & exec $(BIN)/knitcore serve $(OPTIONS)
 
 # --- checking ---------------------------------------------------------------------------------
+# A file's tests share what they compute, so they run in one process; the page's, which are to come
+# last, stay last. Each process collects the tests under another seed of hashes: they are the same.
+BY_FILE := -n 2 --dist loadfile --no-loadscope-reorder
 test: $(VENV)/.installed-tests frontend/node_modules/.installed ## Run the default suite (with Chromium, nginx and PostgreSQL of Debian)
 	scripts/ensure-packages chromium nginx-light postgresql
 	@$(MAKE) --no-print-directory -j 3 $(VENV)/.compiled frontend-check page
-	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/pytest $(BY_FILE) -m "not slow"
 
 test-slow: $(VENV)/.installed-tests $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	scripts/ensure-packages chromium firefox-esr nginx-light postgresql
-	$(BIN)/pytest -n 2 --dist loadgroup -m slow --durations 12
+	$(BIN)/pytest $(BY_FILE) -m slow --durations 12
 
 ten-runs: ## Run both suites ten times, two at a time, in fresh clones; logs in build
 	scripts/ten-runs 10 build/ten-runs.log test
@@ -86,7 +89,7 @@ any-machine: $(VENV)/.installed-tests ## Compare answers under several instructi
 coverage: $(VENV)/.installed-tests page ## Tell which lines the default suite runs, workers included
 	$(BIN)/pip install --quiet --disable-pip-version-check coverage==7.17.3
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest -n 2 --dist loadgroup -m "not slow"; $(BIN)/coverage combine --quiet
+	$(BIN)/coverage run -m pytest $(BY_FILE) -m "not slow"; $(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 
 test-hard: $(VENV)/.installed-tests ## Kill the service 50 times, send thousands of hostile requests, take disk, database and workers away

@@ -5,9 +5,10 @@ import os
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 
 from scripts.serving import CHROMIUM, FLAGS, FORCED, Service
 
@@ -62,17 +63,40 @@ def browser() -> Iterator[Browser]:
         chromium.close()
 
 
-@pytest.fixture
-def visitor(browser: Browser) -> Iterator[Page]:
-    """A page in a browser that was never here before; scripts of ours must not fail."""
+@pytest.fixture(scope="session")
+def profile(browser: Browser) -> Iterator[BrowserContext]:
+    """A profile that all visitors share: it compiles the page once."""
     context = browser.new_context(viewport={"width": 1280, "height": 720}, reduced_motion="reduce")
     context.set_default_timeout(TIMEOUT_MS)
     context.add_init_script(COLOURED_CLOTH)
-    page = context.new_page()
+    yield context
+    context.close()
+
+
+@pytest.fixture(scope="session")
+def visited() -> set[str]:
+    """Origins, such as http://127.0.0.1:8738, of which a profile keeps something."""
+    return set()
+
+
+@pytest.fixture
+def visitor(profile: BrowserContext, visited: set[str]) -> Iterator[Page]:
+    """A page in a browser that keeps nothing of earlier visits; scripts of ours must not fail."""
+    page = profile.new_page()
+    profile.clear_cookies()
+    devtools = profile.new_cdp_session(page)
+    for origin in visited:
+        everything = {"origin": origin, "storageTypes": "all"}
+        devtools.send("Storage.clearDataForOrigin", everything)
+    devtools.detach()
     failures: list[str] = []
     page.on("pageerror", lambda error: failures.append(f"{error.message}\n{error.stack}"))
     yield page
-    context.close()
+    for window in profile.pages:
+        address = urlsplit(window.url)
+        if address.scheme == "http":
+            visited.add(f"http://{address.netloc}")
+        window.close()
     ours = [failure for failure in failures if "/static/" in failure]
     assert not ours, ours
 

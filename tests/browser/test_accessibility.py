@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, ViewportSize, expect
 
-from tests.browser.axe import THEMES, violations
+from tests.browser.axe import violations_in_both_themes
 from tests.browser.conftest import flat, wait_for_numbers
 from tests.browser.page import drop, kept_chart, purls, settle
 
@@ -58,35 +58,33 @@ PANELS: dict[str, Callable[[Page], None]] = {
 @pytest.mark.slow
 def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page) -> None:
     page, faults = flat_studio, []
-    for theme in THEMES:
-        page.emulate_media(color_scheme=theme)
-        faults += [f"{theme} page: {wrong}" for wrong in violations(page)]
-        page.click("#tab-limb")
-        expect(page.locator(".limb-pressure")).to_contain_text("mmHg")
-        faults += [f"{theme} limb: {wrong}" for wrong in violations(page, "#inspector")]
-        page.click("#tab-drape")
-        faults += [f"{theme} drape: {wrong}" for wrong in violations(page, "#inspector")]
-        page.click("#tab-curve")
-        expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
-        page.click("#provenance")
-        page.click("#inspector-details summary")
-        faults += [f"{theme} source: {wrong}" for wrong in violations(page, "#inspector")]
-        page.click("#provenance")
-        page.click("#inspector-details summary")
-        page.focus("#chart")
-        for name in MENUS:
-            page.click(f"#{name}-button")
-            faults += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}-menu")]
-            page.keyboard.press("Escape")
-        for name, open_panel in PANELS.items():
-            open_panel(page)
-            expect(page.locator(f"#{name}")).to_be_visible()
-            expect(page.locator(f"#{name} .busy, #{name}.busy")).to_have_count(
-                0
-            )  # greyed till known
-            faults += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}")]
-            page.locator(f"#{name} header").get_by_label("Close").click()
-            expect(page.locator(f"#{name}")).to_be_hidden()
+
+    def look(name: str, within: str) -> None:
+        faults.extend(f"{name}, {wrong}" for wrong in violations_in_both_themes(page, within))
+
+    look("page", "body")
+    page.click("#tab-limb")
+    expect(page.locator(".limb-pressure")).to_contain_text("mmHg")
+    look("limb", "#inspector")
+    page.click("#tab-drape")
+    look("drape", "#inspector")
+    page.click("#tab-curve")
+    expect(page.locator("#plot-curve .main-svg").first).to_be_visible()
+    page.click("#provenance")
+    page.click("#inspector-details summary")
+    look("source", "#inspector")
+    page.focus("#chart")
+    for name in MENUS:
+        page.click(f"#{name}-button")
+        look(name, f"#{name}-menu")
+        page.keyboard.press("Escape")
+    for name, open_panel in PANELS.items():
+        open_panel(page)
+        expect(page.locator(f"#{name}")).to_be_visible()
+        expect(page.locator(f"#{name} .busy, #{name}.busy")).to_have_count(0)  # greyed till known
+        look(name, f"#{name}")
+        page.locator(f"#{name} header").get_by_label("Close").click()
+        expect(page.locator(f"#{name}")).to_be_hidden()
     assert not faults, "\n".join(faults)
 
 
@@ -95,42 +93,37 @@ def test_nothing_serious_is_wrong_where_targets_and_pictures_are_given(flat_stud
     page, faults = flat_studio, []
     picture = io.BytesIO()
     Image.effect_mandelbrot((60, 40), (-2, -1, 1, 1), 20).save(picture, "PNG")
-    for theme in THEMES:
-        page.emulate_media(color_scheme=theme)
-        page.keyboard.press("Shift+F")
-        expect(page.locator("#inverse-find-content")).to_be_visible()
-        faults += [f"{theme} find: {wrong}" for wrong in violations(page, "#inverse")]
-        page.click("#inverse-close")
-        page.keyboard.press("Shift+W")
-        for way in ("outline", "stiffness"):
-            page.click(f"#fill-{way}")
-            faults += [f"{theme} {way}: {wrong}" for wrong in violations(page, "#panel-fill")]
-        page.keyboard.press("Escape")
-        page.click("#stretch-more")
-        faults += [f"{theme} options: {wrong}" for wrong in violations(page, "#stretch-options")]
-        page.keyboard.press("Escape")
-        drop(page, "purls.png", "image/png", picture.getvalue())
-        expect(page.locator("#picture-dialog")).to_be_visible()
-        faults += [f"{theme} picture: {wrong}" for wrong in violations(page, "#picture-dialog")]
-        page.keyboard.press("Escape")
+    page.keyboard.press("Shift+F")
+    expect(page.locator("#inverse-find-content")).to_be_visible()
+    faults += violations_in_both_themes(page, "#inverse")
+    page.click("#inverse-close")
+    page.keyboard.press("Shift+W")
+    for way in ("outline", "stiffness"):
+        page.click(f"#fill-{way}")
+        faults += violations_in_both_themes(page, "#panel-fill")
+    page.keyboard.press("Escape")
+    page.click("#stretch-more")
+    faults += violations_in_both_themes(page, "#stretch-options")
+    page.keyboard.press("Escape")
+    drop(page, "purls.png", "image/png", picture.getvalue())
+    expect(page.locator("#picture-dialog")).to_be_visible()
+    faults += violations_in_both_themes(page, "#picture-dialog")
     assert not faults, "\n".join(faults)
 
 
 @pytest.mark.slow
 def test_nothing_serious_is_wrong_in_any_stop_of_the_tour(flat_studio: Page) -> None:
     page, faults = flat_studio, []
-    for theme in THEMES:
-        page.emulate_media(color_scheme=theme)
-        page.click("#designs-button")
-        page.click("#menu-tour")
-        expect(page.locator("#tour")).to_be_visible()
-        stops = 0
-        while page.locator("#tour").is_visible():
-            title = page.locator("#tour-title").inner_text()
-            faults += [f"{theme} {title}: {wrong}" for wrong in violations(page)]
-            page.keyboard.press("ArrowRight")
-            stops += 1
-        assert stops >= 8
+    page.click("#designs-button")
+    page.click("#menu-tour")
+    expect(page.locator("#tour")).to_be_visible()
+    stops = 0
+    while page.locator("#tour").is_visible():
+        title = page.locator("#tour-title").inner_text()
+        faults += [f"{title}, {wrong}" for wrong in violations_in_both_themes(page, "body")]
+        page.keyboard.press("ArrowRight")
+        stops += 1
+    assert stops >= 8
     assert not faults, "\n".join(faults)
 
 
@@ -153,7 +146,8 @@ def test_a_chart_is_painted_with_keys_alone(flat_studio: Page) -> None:
     assert focused != left, "the focus cannot be seen"
 
 
-def test_enter_in_the_palette_does_not_press_what_had_the_focus_before(flat_studio: Page) -> None:
+def test_the_palette_finds_what_is_meant_and_keeps_its_keys(flat_studio: Page) -> None:
+    """Enter does not press what had the focus before."""
     page = flat_studio
     page.focus("#chart-size")
     page.keyboard.press("Control+k")
@@ -163,10 +157,6 @@ def test_enter_in_the_palette_does_not_press_what_had_the_focus_before(flat_stud
     expect(page.locator("dialog[open]")).to_have_count(1)
     page.keyboard.press("Escape")
     expect(page.locator("dialog[open]")).to_have_count(0)
-
-
-def test_the_palette_finds_what_is_meant(flat_studio: Page) -> None:
-    page = flat_studio
     page.focus("#chart")
     meant = {
         "2x2 rib": "Paint with 2×2 rib",
@@ -187,19 +177,17 @@ def test_the_palette_finds_what_is_meant(flat_studio: Page) -> None:
     expect(page.locator("#plot-limb")).to_be_visible()
 
 
-def test_reduced_motion_stills_the_page(flat_studio: Page) -> None:
-    moving = flat_studio.evaluate(
+def test_everything_is_still_and_in_reach_on_small_screens(flat_studio: Page) -> None:
+    """Also at a zoom of 200 % and on a phone: nothing is cut off or scrolls sideways. The visitor
+    wants reduced motion."""
+    page = flat_studio
+    moving = page.evaluate(
         """() => [...document.querySelectorAll('*')].filter((element) => {
             const { transitionDuration, animationName } = getComputedStyle(element);
             return Number.parseFloat(transitionDuration) > 0 || animationName !== 'none';
         }).map(({ id, className }) => `${id}.${className}`)"""
     )
     assert moving == []
-
-
-def test_everything_is_in_reach_on_small_screens(flat_studio: Page) -> None:
-    """Also at a zoom of 200 % and on a phone: nothing is cut off or scrolls sideways."""
-    page = flat_studio
     sizes = [(1280, 720), (1024, 768), (820, 1180), (720, 450), (640, 400), (390, 844)]
     for width, height in sizes:
         page.set_viewport_size({"width": width, "height": height})
@@ -216,9 +204,13 @@ def test_everything_is_in_reach_on_small_screens(flat_studio: Page) -> None:
         assert chart["height"] > 180
 
 
-def test_parts_and_targets_leave_the_chart_in_sight_on_a_phone(flat_studio: Page) -> None:
+def test_chart_and_cloth_have_the_whole_screen_of_a_phone_and_panels_leave_them_in_sight(
+    flat_studio: Page,
+) -> None:
+    """Their drawer is closed until it is needed."""
     page = flat_studio
-    page.set_viewport_size({"width": 390, "height": 844})
+    phone: ViewportSize = {"width": 390, "height": 844}
+    page.set_viewport_size(phone)
     page.keyboard.press("Shift+A")
     dock, chart = (page.locator(part) for part in ("#panel-regions", "#chart"))
     expect(dock).to_be_visible()
@@ -230,6 +222,20 @@ def test_parts_and_targets_leave_the_chart_in_sight_on_a_phone(flat_studio: Page
     page.focus("#chart")
     page.keyboard.press("Shift+W")
     expect(page.locator("#part-add")).to_be_in_viewport()
+    page.reload()
+    settle(page)
+    expect(page.locator("#stretch-run")).to_be_hidden()
+    page.click("#stretch-fold")
+    expect(page.locator("#stretch-run")).to_be_visible()
+    page.click("#stretch-fold")
+    for part, whole in (("chart", ".studio"), ("cloth", "#fabric")):
+        page.click(f"#full-{part}")
+        expect(page.locator(f"#full-{part}")).to_have_attribute("aria-pressed", "true")
+        box = page.locator(whole).bounding_box()
+        assert box
+        assert (box["width"], box["height"]) == (phone["width"], phone["height"])
+        page.click(f"#full-{part}")
+        expect(page.locator("#action-undo")).to_be_in_viewport()
 
 
 def test_a_first_visit_on_a_phone_begins_with_the_chart(visitor: Page, service: str) -> None:
@@ -251,27 +257,6 @@ def test_a_menu_is_not_covered_by_the_name_of_its_button(flat_studio: Page) -> N
     flat_studio.hover("#material-button .ellipsis")
     flat_studio.wait_for_timeout(300)
     expect(flat_studio.locator(".tip")).to_be_hidden()
-
-
-def test_chart_and_cloth_have_the_whole_screen_of_a_phone(flat_studio: Page) -> None:
-    """Their drawer is closed until it is needed."""
-    page = flat_studio
-    phone: ViewportSize = {"width": 390, "height": 844}
-    page.set_viewport_size(phone)
-    page.reload()
-    settle(page)
-    expect(page.locator("#stretch-run")).to_be_hidden()
-    page.click("#stretch-fold")
-    expect(page.locator("#stretch-run")).to_be_visible()
-    page.click("#stretch-fold")
-    for part, whole in (("chart", ".studio"), ("cloth", "#fabric")):
-        page.click(f"#full-{part}")
-        expect(page.locator(f"#full-{part}")).to_have_attribute("aria-pressed", "true")
-        box = page.locator(whole).bounding_box()
-        assert box
-        assert (box["width"], box["height"]) == (phone["width"], phone["height"])
-        page.click(f"#full-{part}")
-        expect(page.locator("#action-undo")).to_be_in_viewport()
 
 
 CUT_OFF = """(id) => {

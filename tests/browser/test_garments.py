@@ -84,6 +84,7 @@ def test_a_glove_tells_where_it_is_too_tight(flat_studio: Page) -> None:
     expect(places.last).to_contain_text("mmHg")
 
 
+@pytest.mark.slow
 def test_every_place_of_a_sleeve_is_shown_and_choices_outlast_another_garment(
     flat_studio: Page,
 ) -> None:
@@ -138,11 +139,18 @@ def test_a_sleeve_has_graded_pressure_fabrics_and_sizes(flat_studio: Page) -> No
     expect(page.get_by_label("Around the wrist")).to_have_value("181")
 
 
-def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:
+def test_knitout_is_checked_and_a_pattern_has_a_picture_where_nothing_is_drawn_in_3d(
+    flat_studio: Page,
+) -> None:
     page = flat_studio
     assert exported(page, "knitout").suggested_filename.endswith(".k")
     expect(page.locator("#export-outcome")).to_contain_text("Knitted on a virtual V-bed machine")
     expect(page.locator("#program-report")).to_contain_text("min without stops")
+    page.keyboard.press("Escape")
+    with page.expect_request("**/api/v1/export") as request:
+        pattern = exported(page, "pattern-svg")
+    assert request.value.post_data_json["photo"]
+    assert "data:image/png" in pattern.path().read_text(encoding="utf-8")
 
 
 def test_options_and_result_are_in_sight_with_the_last_format(flat_studio: Page) -> None:
@@ -158,14 +166,6 @@ def test_options_and_result_are_in_sight_with_the_last_format(flat_studio: Page)
             page.locator("#export-make").click()
         expect(page.locator("#export-outcome li").first).to_be_in_viewport()
         page.keyboard.press("Escape")
-
-
-def test_a_pattern_has_a_picture_where_nothing_is_drawn_in_3d(flat_studio: Page) -> None:
-    page = flat_studio
-    with page.expect_request("**/api/v1/export") as request:
-        pattern = exported(page, "pattern-svg")
-    assert request.value.post_data_json["photo"]
-    assert "data:image/png" in pattern.path().read_text(encoding="utf-8")
 
 
 def test_written_rows_are_opened_as_a_design(flat_studio: Page, tmp_path: Path) -> None:

@@ -151,6 +151,7 @@ def test_a_fill_ends_with_its_design(visitor: Page, service: str) -> None:
     assert kept_chart(page) == CHART
 
 
+@pytest.mark.slow
 def test_a_fill_leaves_what_is_painted_meanwhile(visitor: Page, service: str) -> None:
     """Also an unfinished stroke; its numbers are then of another chart."""
     page = flat(visitor)

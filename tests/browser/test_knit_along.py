@@ -21,6 +21,9 @@ def test_the_row_at_hand_is_large_and_kept(visitor: Page, service: str) -> None:
     heading, words = page.locator(".along-row"), page.locator(".along-words")
     expect(heading).to_have_text("Before row 1")
     expect(words).to_contain_text("Cast on 12 sts")
+    turned_by_a_finger(page)
+    page.keyboard.press("Home")
+    expect(heading).to_have_text("Before row 1")
     page.locator("#along-next").click()
     expect(heading).to_have_text("Row 1 of 10")
     expect(page.locator(".along-repeat")).to_have_text("Repeat 1 of 5, row 1 of 2")
@@ -57,8 +60,8 @@ def test_the_row_at_hand_is_large_and_kept(visitor: Page, service: str) -> None:
     expect(heading).to_have_text("Row 8 of 10")
 
 
-def test_a_finger_turns_the_rows(visitor: Page, service: str) -> None:
-    page = opened(open_small_chart(flat(visitor), service, CHART))
+def turned_by_a_finger(page: Page) -> None:
+    """Turn the rows on a touch screen, from row 0 to row 1."""
     swipe = """([from, to]) => {
         const row = document.querySelector(".along-reading");
         const at = (type, clientX) => row.dispatchEvent(

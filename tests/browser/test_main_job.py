@@ -61,7 +61,9 @@ def test_painting_changes_chart_segments_and_moduli(flat_studio: Page) -> None:
     assert "P" in kept_chart(flat_studio)
 
 
-def test_a_button_that_gets_other_words_shows_them_at_once(flat_studio: Page) -> None:
+def test_buttons_say_what_they_do_now_and_the_whole_chart_is_undone_and_redone(
+    flat_studio: Page,
+) -> None:
     run, tip = flat_studio.locator("#stretch-run"), flat_studio.locator(".tip")
     run.hover()
     expect(tip).to_contain_text("Pull the chart")
@@ -70,6 +72,18 @@ def test_a_button_that_gets_other_words_shows_them_at_once(flat_studio: Page) ->
     flat_studio.mouse.move(5, 5)
     expect(tip).to_be_hidden()
     expect(run).to_have_attribute("title", "Cancel the test (J)")
+
+    drag(flat_studio, 60, 0)
+    drag(flat_studio, 0, 60, start=(-60, -40))
+    flat_studio.keyboard.press("x")
+    after = kept_chart(flat_studio)
+    for _ in range(3):
+        flat_studio.keyboard.press("Control+z")
+    assert kept_chart(flat_studio) == CHART
+    expect(flat_studio.locator("#action-undo")).to_be_disabled()
+    for _ in range(3):
+        flat_studio.keyboard.press("Control+Shift+Z")
+    assert kept_chart(flat_studio) == after != CHART
 
 
 def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
@@ -162,17 +176,3 @@ def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> N
     flat_studio.click("#gallery-seed")
     expect(flat_studio.locator("#stretch-slider")).to_be_disabled()
     expect(flat_studio.locator("#stretch-figures")).not_to_contain_text("10 %")
-
-
-def test_the_whole_chart_is_undone_to_the_start_and_redone(flat_studio: Page) -> None:
-    drag(flat_studio, 60, 0)
-    drag(flat_studio, 0, 60, start=(-60, -40))
-    flat_studio.keyboard.press("x")
-    after = kept_chart(flat_studio)
-    for _ in range(3):
-        flat_studio.keyboard.press("Control+z")
-    assert kept_chart(flat_studio) == CHART
-    expect(flat_studio.locator("#action-undo")).to_be_disabled()
-    for _ in range(3):
-        flat_studio.keyboard.press("Control+Shift+Z")
-    assert kept_chart(flat_studio) == after != CHART

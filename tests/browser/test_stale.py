@@ -138,6 +138,7 @@ def test_numbers_come_with_the_title_of_their_part(visitor: Page, service: str) 
     wait_until(page, "current", tuple(RESULTS - {"numbers", "rigidity"}))
 
 
+@pytest.mark.slow
 def test_the_atlas_of_the_yarn_before_is_not_of_the_yarn_now(flat_studio: Page) -> None:
     page = flat_studio
     page.keyboard.press("a")

@@ -11,6 +11,11 @@ MOST = 3.0
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_twice_the_file_takes_about_twice_as_long(name: str) -> None:
-    """Once of two doublings: a machine that does much else disturbs either."""
-    _, (once, twice, four_times) = growth(CASES[name])
-    assert four_times < ENOUGH_S or min(twice / once, four_times / twice) < MOST
+    """Once of two doublings, at once or again: a machine that does much else disturbs either."""
+    assert any(grows_little(name, runs) for runs in (1, 3))
+
+
+def grows_little(name: str, runs: int) -> bool:
+    """True if the time of a case is short, or grows with the file and no faster."""
+    _, (once, twice, four_times) = growth(CASES[name], runs)
+    return four_times < ENOUGH_S or min(twice / once, four_times / twice) < MOST

@@ -27,7 +27,7 @@ from tests.app.running import Service, knitcore, wait_until
 pytestmark = pytest.mark.slow
 
 OUTAGE_S = float(os.environ.get("KNITCORE_OUTAGE_S", "1"))
-KILLS = int(os.environ.get("KNITCORE_KILLS", "2"))
+KILLS = int(os.environ.get("KNITCORE_KILLS", "1"))
 PAINTERS = 4
 JOBS = "/api/v1/jobs"
 SHORT = LONG | {"chart": {"fabric": "garter", "columns": 20, "rows": 20}, "steps": 8}

@@ -59,7 +59,8 @@ def schema(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_python_client(schema: Path) -> None:
     folder = schema.parent
     bytes_ = dict.fromkeys(AS_BYTES, "application/octet-stream")
-    (folder / "config.json").write_text(json.dumps({"content_type_overrides": bytes_}))
+    unformatted = {"content_type_overrides": bytes_, "post_hooks": []}
+    (folder / "config.json").write_text(json.dumps(unformatted))
     generate = ["openapi-python-client", "generate", "--path", schema, "--meta", "none"]
     options = ["--config", folder / "config.json", "--output-path", folder / "generated"]
     tool = [PROGRAMS / "uv", "tool", "run", "--from", PYTHON_GENERATOR]

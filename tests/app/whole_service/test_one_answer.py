@@ -56,7 +56,7 @@ def _charts() -> dict[str, StitchChart]:
 
 CHARTS = _charts()
 ALL = list(CHARTS.values())
-MANY, SOME = ALL[::4], ALL[::60]
+MANY, FEW, SOME = ALL[::3], ALL[::12], ALL[::60]
 
 in_yarns = pytest.mark.parametrize(
     ("yarn", "charts"),
@@ -64,7 +64,7 @@ in_yarns = pytest.mark.parametrize(
         *((yarn, SOME) for yarn in ("acrylic", "glove-wool", "lace-bamboo")),
         *(
             pytest.param(yarn, charts, marks=pytest.mark.slow)
-            for yarn, charts in (("acrylic", ALL), ("acrylic:simulation", MANY), ("cotton", MANY))
+            for yarn, charts in (("acrylic", MANY), ("acrylic:simulation", FEW), ("cotton", FEW))
         ),
     ],
     ids=lambda given: given if isinstance(given, str) else f"{len(given)} charts",

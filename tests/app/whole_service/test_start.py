@@ -40,10 +40,10 @@ print(len(gc.get_objects()), gc.get_freeze_count())
 """
 
 
-@pytest.fixture
-def env(tmp_path: Path) -> dict[str, str]:
+@pytest.fixture(scope="module")
+def env(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """Settings with a database that is up to date."""
-    variables = {"KNITCORE_DATA_DIR": str(tmp_path / "data")}
+    variables = {"KNITCORE_DATA_DIR": str(tmp_path_factory.mktemp("data"))}
     assert knitcore("token", "list", env=variables).returncode == 0
     return variables
 

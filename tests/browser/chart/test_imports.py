@@ -148,7 +148,7 @@ def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> No
     assert kept_design(flat_studio) == before
 
 
-def test_project_files_open(flat_studio: Page) -> None:
+def test_project_files_open_and_notes_of_the_reader_are_shown(flat_studio: Page) -> None:
     old = {
         "format": "knitcore-design",
         "version": 2,
@@ -175,8 +175,6 @@ def test_project_files_open(flat_studio: Page) -> None:
     design = kept_design(flat_studio)
     assert (design["outline"], design["regions"]) == ("xxx.\nxxxx", [region])
 
-
-def test_notes_of_the_reader_are_shown(flat_studio: Page) -> None:
     drop(flat_studio, "blank.txt", "text/plain", b"P P P \n P P P\nP P P \n P P P\n")
     messages = flat_studio.locator("#messages")
     expect(messages).to_contain_text("blank squares are read as knits")

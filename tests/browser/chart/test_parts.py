@@ -93,6 +93,7 @@ def test_copies_of_a_repeat_follow_each_other(flat_studio: Page) -> None:
     assert (design["repeats"], design["chart"]) == ([], CHART)
 
 
+@pytest.mark.slow
 def test_a_chart_filled_with_a_repeat_grows_by_whole_motifs(flat_studio: Page) -> None:
     chart = Chart(flat_studio)
     flat_studio.click("#ink-purl")

@@ -7,6 +7,7 @@ from tests.browser.conftest import CHART
 from tests.browser.page import Chart, block, kept_chart, kept_design, purls
 
 
+@pytest.mark.slow
 def test_selections_are_combined_with_keys(flat_studio: Page) -> None:
     chart = Chart(flat_studio)
     bar = flat_studio.locator("#selection-bar")
@@ -35,7 +36,10 @@ def test_selections_are_combined_with_keys(flat_studio: Page) -> None:
     expect(bar).to_contain_text("12 × 10")
 
 
-def test_what_is_selected_is_moved_copied_and_turned_and_all_undone(flat_studio: Page) -> None:
+def test_what_is_selected_and_whole_rows_and_columns_are_moved_and_all_undone(
+    flat_studio: Page,
+) -> None:
+    """They are copied, turned, inserted and deleted, too; resizing keeps the chosen corner."""
     chart = Chart(flat_studio)
     flat_studio.click("#ink-purl")
     chart.drag((2, 2), (2, 4))
@@ -59,10 +63,9 @@ def test_what_is_selected_is_moved_copied_and_turned_and_all_undone(flat_studio:
         flat_studio.keyboard.press("Control+z")
     assert kept_chart(flat_studio) == CHART
 
-
-def test_rows_and_columns_are_inserted_and_deleted(flat_studio: Page) -> None:
-    chart = Chart(flat_studio)
-    flat_studio.click("#ink-purl")
+    flat_studio.keyboard.press("Escape")
+    flat_studio.click("#tool-pencil")
+    chart.look()
     chart.drag((3, 1), (3, 12))
     flat_studio.click("#tool-select")
     chart.drag((3, 1), (4, 2))
@@ -75,10 +78,9 @@ def test_rows_and_columns_are_inserted_and_deleted(flat_studio: Page) -> None:
         flat_studio.keyboard.press("Control+z")
     assert kept_chart(flat_studio) == CHART
 
-
-def test_resizing_keeps_the_chosen_corner(flat_studio: Page) -> None:
-    chart = Chart(flat_studio)
-    flat_studio.click("#ink-purl")
+    flat_studio.keyboard.press("Escape")
+    flat_studio.click("#tool-pencil")
+    chart.look()
     chart.click(10, 1)
     flat_studio.click("#chart-size")
     flat_studio.fill("#new-columns", "14")

@@ -9,7 +9,7 @@ from tests.browser.conftest import CHART
 from tests.browser.page import Chart, block, kept_chart, kept_design, purls
 
 
-def test_every_tool_paints_and_all_is_undone(flat_studio: Page) -> None:
+def test_every_tool_paints_and_keeps_symmetry_and_all_is_undone(flat_studio: Page) -> None:
     chart = Chart(flat_studio)
     flat_studio.click("#ink-purl")
     painted = [
@@ -44,10 +44,7 @@ def test_every_tool_paints_and_all_is_undone(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == CHART
     expect(flat_studio.locator("#action-undo")).to_be_disabled()
 
-
-def test_symmetry_holds_for_every_tool(flat_studio: Page) -> None:
-    chart = Chart(flat_studio)
-    flat_studio.click("#ink-purl")
+    chart.look()
     for _ in range(3):
         flat_studio.keyboard.press("y")
     for tool, path in (

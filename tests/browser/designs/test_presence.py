@@ -6,8 +6,9 @@ from playwright.sync_api import Page, Route, expect
 from tests.browser.conftest import flat, second_window, wait_for_numbers
 from tests.browser.page import drag
 
+pytestmark = pytest.mark.slow
 
-@pytest.mark.slow
+
 def test_a_stroke_in_one_window_is_seen_in_the_other_which_nobody_touches(
     flat_studio: Page,
 ) -> None:
@@ -74,7 +75,6 @@ def test_windows_that_both_paint_before_the_first_delivery_share_one_design(
     assert first.evaluate("location.hash") == second.evaluate("location.hash") != ""
 
 
-@pytest.mark.slow
 def test_another_browser_with_the_design_is_told_of_and_its_strokes_are_seen(
     flat_studio: Page,
 ) -> None:

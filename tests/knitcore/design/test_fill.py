@@ -72,7 +72,7 @@ def off(field: FilledField, chart: StitchChart) -> float:
     return float((np.abs(ratios - 1) > 0.10).any(axis=0).mean())
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_hidden_chart_of_the_four_fabrics_is_found_again(seed: int) -> None:
     """At most 5 % of the area off by more than 10 %, even from a map that is not exact."""
     for least in (5, 8):
@@ -289,14 +289,14 @@ def check_no_part_is_farther(partition: Partition, seed: int) -> None:
     assert np.array_equal(field.chart.purl[outside], kept.purl[outside])
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_no_part_is_farther_from_its_target_than_before(seed: int) -> None:
     """And what should be softer is nowhere stiffer."""
     check_no_part_is_farther(pieces_of_a_square(seed), seed)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("pieces", "count"), [(pieces_of_a_square, 12), (pieces_of_a_garment, 3)])
+@pytest.mark.parametrize(("pieces", "count"), [(pieces_of_a_square, 8), (pieces_of_a_garment, 3)])
 def test_no_part_is_farther_from_its_target_in_many_charts(
     pieces: Callable[[int], Partition], count: int
 ) -> None:

@@ -282,6 +282,7 @@ def test_what_cannot_be_read_is_said(tmp_path: Path, content: bytes, says: str) 
         read(tmp_path / "test.csv", content)
 
 
+@pytest.mark.slow
 def test_a_law_is_fitted_without_a_strain_across_and_says_that_it_is_less_certain(
     tmp_path: Path,
 ) -> None:

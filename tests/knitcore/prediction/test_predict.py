@@ -153,7 +153,7 @@ def test_the_same_cloth_has_one_answer(chart):
                 np.testing.assert_allclose(strains, own_strains, rtol=1e-6)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(stitch_charts(6), st.sampled_from([*load_library()]))
 def test_intervals_and_bounds_hold_the_value(chart, identifier):
     prediction = predict(chart, material(identifier))

@@ -29,6 +29,7 @@ def characterised(*arguments: str) -> Any:
     return json.loads(printed("characterise", *arguments, "--json").stdout)
 
 
+@pytest.mark.slow
 def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
     yarns = characterised(
         "cotton", *YARN, "--fabrics", "stockinette", "--loop-lengths", "12,12.5", "--workers", "1",

@@ -114,10 +114,10 @@ def test_rows_with_changes_take_more_yarn_if_that_is_chosen(tmp_path: Path) -> N
 
 
 def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_more_certain(
-    client: TestClient,
+    client: TestClient, tmp_path: Path
 ) -> None:
     """The prediction names the repeat; measured materials and held shapes have no such gauge."""
-    repeat = "KKP\nPKP\nKPK\nPPK"
+    repeat = "KKPKP\nKPPKK"
     body = {"chart": f"{repeat}\n{repeat}", "material": "acrylic:simulation"}
     learned = post(client, "predict", body)
     assert learned["worth_relaxing"] == repeat
@@ -131,14 +131,12 @@ def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_mor
     widths = [high / low for low, high in ends]
     assert widths[1] < widths[0]
     # kept results of the same yarn are found again, but the gauge is the material's
-    held = {"flat": True}, {"loop_length_mm": 13.0}, {"cell_course_mm": 3.4}
-    for change in ({"material": "acrylic"}, *held):
-        assert post(client, "relax", single | change)["gauge"] is None
-
-
-def test_relax_prints_the_options_that_predict_takes(tmp_path: Path) -> None:
+    assert post(client, "relax", single | {"material": "acrylic"})["gauge"] is None
+    for held in ({"flat": True}, {"loop_length_mm": 13.0}, {"cell_course_mm": 3.4}):
+        assert post(client, "relax", body | {"chart": "KKP"} | held)["gauge"] is None
+    # the command line, which finds the result as well, prints the options that predict takes
     chart = tmp_path / "chart.txt"
-    chart.write_text("KKP\nPKP\nKPP\n")
+    chart.write_text(repeat)
     words = [str(chart), "--material", "acrylic:simulation"]
     lines = printed("relax", *words).output.splitlines()
     options = next(line for line in lines if line.startswith("for predict")).split()[2:]
@@ -148,6 +146,7 @@ def test_relax_prints_the_options_that_predict_takes(tmp_path: Path) -> None:
 ACRYLIC = ("--material", "acrylic")
 
 
+@pytest.mark.slow
 def test_a_fabric_rests_at_the_sizes_that_hysteresis_gives(client: TestClient) -> None:
     """Without a coefficient of its own the request has that of the yarn."""
     shape = run("relax", "stockinette", *ACRYLIC, "--history", "stretched-course")
@@ -177,6 +176,8 @@ def test_a_coefficient_alone_means_as_knitted(client: TestClient) -> None:
     assert shape["cell_wale_mm"] > 1.004 * shape["rest_sizes"][0]["wale_mm"]
     assert len(shape["centre_lines_mm"]) == 1
     assert "Coefficient of friction 0.4: as given." in shape["notes"]
-    output = printed("relax", "stockinette", *ACRYLIC, "--friction", "0.4").output
+    again = "--friction", "0.4", "--centre-lines"  # known from storage
+    output = printed("relax", "stockinette", *ACRYLIC, *again).output
+    assert "stored result" in output
     (here,) = (line for line in output.splitlines() if line.endswith(", here"))
     assert here.startswith("rest, as-knitted")

@@ -1,6 +1,5 @@
 """Programs as other tools write them, small and by hand."""
 
-import time
 from collections.abc import Iterator, Sequence
 
 import pytest
@@ -400,14 +399,3 @@ def test_two_pieces_are_refused() -> None:
 def test_mistakes_are_named_by_line(line: str, says: str) -> None:
     with pytest.raises(InputError, match=says):
         read(line)
-
-
-def test_long_programs_take_time_in_proportion() -> None:
-    head = [*HEAD, *(f";;X-Note-{n}: {'-' * 20}" for n in range(1200))]
-    seconds = []
-    for rows in (100, 400):
-        program = "\n".join([*head, *stockinette(rows, width=200)])
-        begin = time.process_time()
-        assert knitted_chart(program).chart.rows == rows
-        seconds.append(time.process_time() - begin)
-    assert seconds[1] < 10 * seconds[0] + 1

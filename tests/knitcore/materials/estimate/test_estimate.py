@@ -38,6 +38,7 @@ def test_left_out_yarns_are_predicted_as_well_as_the_notes_say() -> None:
     assert plain.strain_rms_factor == pytest.approx(1.27, abs=0.02)
 
 
+@pytest.mark.slow
 def test_ninety_percent_intervals_cover_85_to_95() -> None:
     """Calibrated without the yarn that they should cover; of the values of all swatches that a user
     may have knitted, up to two. Of a single choice there are only 32 to 64 values.

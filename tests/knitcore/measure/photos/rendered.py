@@ -45,6 +45,7 @@ class Scene:
     marks: bool = True
     texture: bool = True
     px_per_mm: float = 6.0
+    seen_mm: tuple[float, float] = (240.0, 330.0)
     distance_mm: float = 700.0
     seed: int = 0
     fabric: Fabric = Fabric.STOCKINETTE
@@ -60,7 +61,7 @@ class Scene:
     def photo(self) -> Array:
         """Grey levels (rows, columns) between 0 and 1."""
         random = np.random.default_rng(self.seed)
-        rows, columns = round(330 * self.px_per_mm), round(240 * self.px_per_mm)
+        columns, rows = (round(side * self.px_per_mm) for side in self.seen_mm)
         v, u = np.mgrid[0:rows, 0:columns].astype(float)
         x, y = self._plane(u - columns / 2, v - rows / 2)
         picture = self._drawn(x, y, random)

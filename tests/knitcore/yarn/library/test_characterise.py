@@ -107,7 +107,16 @@ def test_impossible_plans_are_refused() -> None:
         plan_for_yarn("mine", COTTON.yarn, [12.0], fabrics=[])
 
 
-@pytest.mark.parametrize("name", sorted(load_library()))
+USUAL = "acrylic", "glove-wool"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        name if name in USUAL else pytest.param(name, marks=pytest.mark.slow)
+        for name in sorted(load_library())
+    ],
+)
 def test_every_yarn_of_the_library_can_be_characterised(name: str) -> None:
     """Other yarns than acrylic and cotton have labelled estimates of radius, core, k and p."""
     plan = plan_for_material(material(name), fabrics=[Fabric.RIB], tensions=[1.0])

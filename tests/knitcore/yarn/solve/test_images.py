@@ -1,5 +1,8 @@
 """Images of a fabric: their number, and the shape to which they relax."""
 
+from functools import cache
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +11,7 @@ from hypothesis import strategies as st
 from knitcore.chart.repeats import primitive_repeats
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.yarn.model.paper_samples import sample
+from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.solve.images import placement, placements, turned
 from knitcore.yarn.study.relax import relax
 from scripts.stored_stitches import COMMON
@@ -21,15 +25,29 @@ IMAGES = {
 }
 
 
-@pytest.mark.parametrize("options", [{}, {"branch": "mirrored"}, {"cell_course_mm": 4.0}])
-@pytest.mark.parametrize("text", ["KPP", "KP/PP/KK"])
-@pytest.mark.parametrize("image", IMAGES)
-def test_an_image_has_the_shape_of_the_chart(text, image, options):
+HELD = {"free": {}, "mirrored": {"branch": "mirrored"}, "held": {"cell_course_mm": 4.0}}
+
+
+@cache
+def rested(text, way):
+    """A repeat of cotton, relaxed in a way."""
     entry = sample("cotton", "rib")
-    chart = StitchChart.parse(text)
-    other = StitchChart(IMAGES[image](chart.purl))
-    original = relax(chart, entry.yarn, entry.loop_length_mm, **options)
-    turned_over = relax(other, entry.yarn, entry.loop_length_mm, **options)
+    return relax(StitchChart.parse(text), entry.yarn, entry.loop_length_mm, **HELD[way])
+
+
+@pytest.mark.parametrize(
+    ("text", "way", "image"),
+    [
+        *product(["KPP"], ["mirrored", "held"], IMAGES),
+        *product(["KP/PP/KK"], ["free"], IMAGES),
+        ("KP/PP/KK", "mirrored", "shifted"),
+        ("KP/PP/KK", "held", "from the back"),
+    ],
+)
+def test_an_image_has_the_shape_of_the_chart(text, way, image):
+    original = rested(text, way)
+    other = StitchChart(IMAGES[image](StitchChart.parse(text).purl))
+    turned_over = rested(other.text, way)
     assert turned_over.chart.repeat() == other.repeat()
     assert turned_over.energy_n_mm == pytest.approx(original.energy_n_mm, rel=1e-6)
     assert turned_over.cell_course_mm == pytest.approx(original.cell_course_mm, rel=1e-4)
@@ -41,7 +59,8 @@ def test_an_image_has_the_shape_of_the_chart(text, image, options):
 
 def test_the_yarn_of_a_mirrored_image_runs_the_other_way():
     chart = StitchChart.parse("KKP/KPP")
-    original = relaxed(chart, sample("acrylic", "rib"), branch="free")
+    grid = SplineGrid(12, 4)
+    original = relaxed(chart, sample("acrylic", "rib"), branch="free", grid=grid)
     mirrored = turned(original, StitchChart(chart.purl[:, ::-1]))
     wide = 3 * original.cell_course_mm
     here, there = original.centre_lines[0], mirrored.centre_lines[0, ::-1] * (-1.0, 1.0, 1.0)

