@@ -99,15 +99,15 @@ def sheet_picture(scene: FabricScene, *, back: bool = False) -> Picture | None:
     Returns
     -------
     (height, width, 4) uint8, as wide and high as the cloth's
-    :attr:`~knitcore_app.drawing.fabric.Ground.extent_mm`, opaque where there is cloth; None of a
+    :attr:`~knitcore_app.drawing.fabric.Ground.reach_mm`, opaque where there is cloth; None of a
     cloth that tubes show well: one of few stitches, or one that has left its plane.
     """
     if not looks_even(scene):
         return None
-    extent = scene.ground.extent_mm
+    reach = scene.ground.reach_mm
     stitch = STITCH / float(scene.ground.sizes_mm[..., 0].mean())
-    scale = min(stitch, math.sqrt(PIXELS / extent.prod()), LONGEST / float(extent.max()))
-    width, height = np.maximum(np.round(scale * extent).astype(int), 1).tolist()
+    scale = min(stitch, math.sqrt(PIXELS / reach.prod()), LONGEST / float(reach.max()))
+    width, height = np.maximum(np.round(scale * reach).astype(int), 1).tolist()
     nothing = np.full((height, width), -np.inf, np.float32), np.empty((0, 3))
     balls = _balls(scene, scale, (width, height), -1 if back else 1)
     return _filled(drawn(balls, nothing))

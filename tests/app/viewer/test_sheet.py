@@ -56,7 +56,7 @@ def test_a_picture_has_the_proportions_of_the_cloth_and_no_holes() -> None:
     of = scene()
     face, _ = sides(of)
     height, width = face.shape[:2]
-    across, down = of.ground.extent_mm
+    across, down = of.ground.reach_mm
     assert width / height == pytest.approx(across / down, rel=0.02)
     inside = face[height // 4 : -height // 4, width // 4 : -width // 4, 3]
     assert inside.min() == 255
