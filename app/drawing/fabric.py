@@ -109,12 +109,16 @@ class Ground:
         return np.asarray(np.ptp(self._ends_mm, axis=0))
 
     @property
+    def reach_mm(self) -> Array:
+        """Width and height with the outermost loops, which reach beyond the chart."""
+        return np.asarray(self.extent_mm + self.sizes_mm[0, 0])
+
+    @property
     def framed_mm(self) -> Array:
-        """Width and height that a camera frames: loops reach into neighbouring rows and columns,
-        the outermost beyond the chart, and a stretch may need more room than the rest."""
-        room = self.extent_mm if self.room_mm is None else np.maximum(self.extent_mm, self.room_mm)
-        framed: Array = room + self.sizes_mm[0, 0]
-        return framed
+        """Width and height that a camera frames: a stretch may need more room than the rest."""
+        if self.room_mm is None:
+            return self.reach_mm
+        return np.asarray(np.maximum(self.reach_mm, self.room_mm + self.sizes_mm[0, 0]))
 
     def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
         """The stitch at a place of the scene, (row, column); None outside the fabric."""

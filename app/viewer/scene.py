@@ -29,14 +29,16 @@ MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
 """Colour of the scale, which shows on light and on dark ground."""
-SCALE_BELOW = (1.8, 0.045)
-"""The scale lies this many stitches below the fabric, and this share of its height at least."""
+SCALE_BELOW = (1.8, 0.075)
+"""The scale lies this many stitches below the fabric, and this share of what is framed at least:
+its words have the same size on the screen from near and from afar."""
 WORDS_BELOW = 1.3
 """Room below the fabric for the scale with its words, over how far the scale lies below it."""
 PAPER = (255, 252, 246)
 UNSHADED: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
-SHEETS = {"face": ((1.0, 0.0, 0.0, 0.0), 0.0), "back": ((0.0, 0.0, 1.0, 0.0), 0.2)}
-"""Rotation, and depth below the middle plane over the yarn's height, of pictures of a cloth."""
+SHEETS = {"face": ((0.0, 1.0, 0.0, 0.0), 0.0), "back": ((0.0, 0.0, 0.0, 1.0), 0.2)}
+"""Rotation, and depth below the middle plane over the yarn's height, of pictures of a cloth. viser
+has the top of a picture at its lowest y, as cameras do."""
 COARSE_WINDOW = 10_000
 """Stitches drawn as yarn without a GPU, of a chart that is too large to be drawn whole."""
 
@@ -205,7 +207,7 @@ class SceneWriter:
             self._put(side, None)
             return
         turned, depth = SHEETS[side]
-        width, height = UNITS_PER_MM * ground.extent_mm
+        width, height = UNITS_PER_MM * ground.reach_mm
         png: Any = picture  # packed already; see app.viewer.private_port
         image = self._server.scene.add_image(
             f"/{side}", png, float(width), float(height), format="png", wxyz=turned,
@@ -284,7 +286,8 @@ def _scale_below_mm(ground: Ground) -> float:
     the more they are stretched.
     """
     stitch = float(ground.sizes_mm[..., 1].max())
-    return max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * float(ground.extent_mm[1]))
+    width, height = map(float, ground.framed_mm)
+    return max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * max(height, width / ASPECT))
 
 
 def _units(points_mm: Array) -> NDArray[np.float32]:

@@ -37,6 +37,10 @@ SOFT = 0.9
 PACKED = 3
 """zlib's level for pictures on their way to browsers: with higher ones, they are a tenth smaller
 and take four times as long."""
+SHIFTS = np.array([0.7549, 0.5698])
+"""Pixels by which stitches are shifted from row to row, and from column to column, without their
+whole part (Roberts's evenly spread sequence): loops would slowly fall out of step with pixels and
+in again, and the cloth would have bands."""
 FEWEST = 900
 """Stitches of a flat cloth that is seen from so far that its loops make one surface."""
 
@@ -99,15 +103,15 @@ def sheet_picture(scene: FabricScene, *, back: bool = False) -> Picture | None:
     Returns
     -------
     (height, width, 4) uint8, as wide and high as the cloth's
-    :attr:`~knitcore_app.drawing.fabric.Ground.extent_mm`, opaque where there is cloth; None of a
+    :attr:`~knitcore_app.drawing.fabric.Ground.reach_mm`, opaque where there is cloth; None of a
     cloth that tubes show well: one of few stitches, or one that has left its plane.
     """
     if not looks_even(scene):
         return None
-    extent = scene.ground.extent_mm
+    reach = scene.ground.reach_mm
     stitch = STITCH / float(scene.ground.sizes_mm[..., 0].mean())
-    scale = min(stitch, math.sqrt(PIXELS / extent.prod()), LONGEST / float(extent.max()))
-    width, height = np.maximum(np.round(scale * extent).astype(int), 1).tolist()
+    scale = min(stitch, math.sqrt(PIXELS / reach.prod()), LONGEST / float(reach.max()))
+    width, height = np.maximum(np.round(scale * reach).astype(int), 1).tolist()
     nothing = np.full((height, width), -np.inf, np.float32), np.empty((0, 3))
     balls = _balls(scene, scale, (width, height), -1 if back else 1)
     return _filled(drawn(balls, nothing))
@@ -128,6 +132,8 @@ def _balls(scene: FabricScene, scale: float, size: tuple[int, int], side: int) -
     angles = places.angles[shown].astype(np.float32).reshape(-1, 1)
     cosine, sine = np.cos(angles), np.sin(angles)
     away = scale * (places.centres_mm[shown].reshape(-1, 2) - scene.ground.middle_mm)
+    rows, columns = np.indices(shapes.index.shape)[:, shown].reshape(2, -1, 1)
+    away += (SHIFTS * rows + SHIFTS[::-1] * columns) % 1.0 - 0.5
     middle = (away + 0.5 * np.array(size) * [side, -1]).astype(np.float32)
     x = cosine * own[..., 0] - sine * own[..., 1] + middle[:, :1]
     y = sine * own[..., 0] + cosine * own[..., 1] + middle[:, 1:]

@@ -41,7 +41,7 @@ def still_png(scene: FabricScene, width: int, height: int) -> bytes:
 
 def _sheet(scene: FabricScene, sheet: Picture, width: int, height: int) -> Image.Image:
     """Draw a cloth of many stitches as it looks from afar."""
-    eye, half = _Eye.of(scene, width, height), 0.5 * scene.ground.extent_mm
+    eye, half = _Eye.of(scene, width, height), 0.5 * scene.ground.reach_mm
     corners = eye.middle_mm + np.array([[-half[0], half[1], 0.0], [half[0], -half[1], 0.0]])
     (left, top, _), (right, bottom, _) = eye.seen(corners).round().astype(int).tolist()
     size = (max(right - left, 1), max(bottom - top, 1))
