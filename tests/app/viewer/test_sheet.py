@@ -4,6 +4,7 @@ from io import BytesIO
 
 import numpy as np
 import pytest
+import scipy
 from PIL import Image
 
 from app.drawing.fabric import FabricScene
@@ -60,6 +61,15 @@ def test_a_picture_has_the_proportions_of_the_cloth_and_no_holes() -> None:
     assert width / height == pytest.approx(across / down, rel=0.02)
     inside = face[height // 4 : -height // 4, width // 4 : -width // 4, 3]
     assert inside.min() == 255
+
+
+@pytest.mark.parametrize("lines", ["KK", "KP"], ids=["stockinette", "garter"])
+def test_rows_and_pixels_do_not_make_bands(lines: str) -> None:
+    face = sheet_picture(scene("\n".join(kind * ROWS for kind in lines)))
+    assert face is not None
+    light = ((face[..., :3] / 255) ** 2.2).mean(axis=2)
+    rows = scipy.ndimage.gaussian_filter1d(light[:, 50:-50].mean(axis=1), 12)[50:-50]
+    assert rows.std() < 0.006 * rows.mean()
 
 
 def test_there_is_no_cloth_beyond_the_outline() -> None:
