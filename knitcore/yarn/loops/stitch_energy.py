@@ -10,6 +10,7 @@ from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
+from knitcore.materials.yarn_per_stitch import YARN_OF_FLOAT, YARN_OF_TUCK
 from knitcore.yarn.kernels.structures import Ints, Pairs
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
 
@@ -28,8 +29,8 @@ class YarnPerAct:
     """
 
     yarn_over: float = 1.0
-    tuck: float = 0.75
-    slip: float = 0.27
+    tuck: float = YARN_OF_TUCK
+    slip: float = YARN_OF_FLOAT
     crossing: float = 1.0
 
     def __post_init__(self) -> None:
