@@ -43,13 +43,14 @@ def test_every_operation_has_a_route_or_is_a_job(schema: dict[str, Any]) -> None
 
 
 def test_every_operation_on_a_chart_of_a_material_takes_its_gauge() -> None:
-    """But not what computes its size from the yarn, and a fill, whose parts have one each."""
+    """But not what computes its size from the yarn, rows to knit, which have none, and a fill,
+    whose parts have one each."""
     without = set()
     for name, operation in operations().items():
         fields = operation.request.model_fields
         if {"chart", "material"} <= fields.keys() and not issubclass(operation.request, Gauged):
             without |= {name} if operation.tag != "yarn level" else set()
-    assert without == {"fill"}
+    assert without == {"fill", "knit_along"}
 
 
 Lines = Callable[[Any], list[str]]
@@ -273,7 +274,10 @@ def test_a_request_passes_its_fields_to_the_library() -> None:
     assert request.pass_to(pull, "KP", 0.4, mesh=2.0, steps=5) == ("KP", 0.4, 0.03, 5, 2.0)
 
 
-YARN_ALONE = {"characterise", "import", "material", "relax", "rs", "sweep", "tube", "uses", "whole"}
+YARN_ALONE = {
+    "characterise", "dial", "import", "knit_along", "material", "relax", "relax_stitches", "rs",
+    "sweep", "tube", "uses", "whole",
+}  # fmt: skip
 """They compute from the yarn, the size of its stitches or its document; the address of `material`
 names laws."""
 
