@@ -31,4 +31,4 @@ def test_the_yarn_of_a_stitch_may_be_given() -> None:
 def test_a_repeat_that_is_too_large_or_does_not_balance_is_refused(client: TestClient) -> None:
     body = {"chart": ";".join(["O/" + 6 * "K"] * 8), "material": "acrylic"}
     assert "64 stitches" in refusal(client, "relax-stitches", body)["detail"]
-    assert "row 1" in refused("relax-stitches", "OKK;KKK", "--material", "acrylic")
+    assert "row 2" in refused("relax-stitches", "OKK;KKK", "--material", "acrylic")
