@@ -11,7 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from knitcore.base.arrays import Indices
+from knitcore.base.errors import InputError
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
 
@@ -51,9 +54,25 @@ class HeldLoop(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class HeldLoops:
-    """The loops on all needles of a graph."""
+    """The loops on all needles of a graph.
+
+    Raises
+    ------
+    InputError
+        If loops that are knitted together are twisted, which is not drawn.
+    """
 
     graph: StitchGraph
+
+    def __post_init__(self) -> None:
+        together = np.diff(self.graph.first, axis=1) > 1
+        for row, column in np.argwhere(together & (self.graph.turn != 0)):
+            raise InputError(
+                "chart",
+                f"row {row + 1}, stitch {column + 1} twists loops that it knits together, which "
+                "the yarn level does not draw.",
+                "Knit them together without a twist.",
+            )
 
     @cached_property
     def taker(self) -> Indices:

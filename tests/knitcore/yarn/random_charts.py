@@ -32,7 +32,11 @@ EXAMPLES = {
 }
 """Repeats of all kinds of stitches."""
 
-_KINDS = [stitch for stitch in STITCHES if stitch.width <= 4]
+_KINDS = [
+    stitch
+    for stitch in STITCHES
+    if stitch.width <= 4 and not any(s.turn and len(s.sources) > 1 for s in stitch.sites)
+]
 _BY_CODE = {stitch.code: stitch for stitch in STITCHES}
 _KNIT, _OVER, _TOGETHER = (_BY_CODE[code] for code in "KO/")
 

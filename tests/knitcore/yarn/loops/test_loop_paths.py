@@ -1,9 +1,11 @@
 """The paths of the yarn of any stitches."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 
 from knitcore.base.arrays import Array
+from knitcore.base.errors import InputError
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.yarn.loops.held_loops import HeldLoops
 from knitcore.yarn.loops.loop_paths import LoopPaths
@@ -37,3 +39,8 @@ def test_layers_of_decreases_tucks_and_cables() -> None:
     assert layers("KK;KT", 1) == {(-1, 1): 1, (0, 1): -1}
     held = HeldLoops(SymbolChart.parse("[1/1R];KK").graph)
     assert [held.passing(1, column) for column in (0, 1)] == [-1, 1]
+
+
+def test_loops_that_are_twisted_and_knitted_together_are_refused() -> None:
+    with pytest.raises(InputError, match="row 1, stitch 1 twists loops"):
+        HeldLoops(SymbolChart.parse("KK;[K10']O").graph)
