@@ -435,9 +435,9 @@ def _stacked(a: LoopMove, b: LoopMove, left: _Way, right: _Way, place: Needle) -
 
 def _lie_as_meant(a: LoopMove, b: LoopMove, crossings: list[int]) -> bool:
     sides = (a.start.number - b.start.number) * (a.target.number - b.target.number)
-    if a.target == b.target and len(crossings) == 1:  # it comes round to its side of the stack
-        is_front = (a.order < b.order) == (a.target.bed == "f")
-        return a.order == b.order or crossings[0] == (1 if is_front else -1)
+    if a.target == b.target and a.order != b.order and len(crossings) == 1:
+        is_front = (a.order < b.order) == (a.target.bed == "f")  # it comes round to its side
+        return crossings[0] == (1 if is_front else -1)
     if sides >= 0:
         return not crossings
     return len(crossings) == 1 and (

@@ -22,7 +22,6 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from knitcore.base.arrays import Array, Indices
@@ -301,7 +300,9 @@ def shares_of_patches(cuts: Indices, count: int) -> Array:
     own = np.repeat(np.eye(len(sizes)), sizes, axis=0)
     period = len(own)
     own = np.pad(own, ((widest, widest), (0, 0)), "wrap" if count > period else "symmetric")
-    shares = scipy.ndimage.convolve1d(own, around / widest, axis=0)[widest : widest + period]
+    mean = around / widest
+    shares = np.stack([np.convolve(column, mean, "same") for column in own.T], axis=1)
+    shares = shares[widest : widest + period]
     return np.asarray(shares[np.arange(count) % period])
 
 

@@ -23,6 +23,8 @@ The flat composite is taken as lines of cells along the pull: in a line the phas
 one force, and all lines are strained alike.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial

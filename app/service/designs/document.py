@@ -148,7 +148,9 @@ class Versions(BaseModel):
 class PlaceRequest(RequestModel):
     """Where somebody is in knitting a design."""
 
-    row: int = Field(ge=0, le=100_000, description="Row at hand; 0 before the first.")
+    row: int = Field(
+        ge=0, le=100_000, description="Row at hand, counted from 0, which is before the first."
+    )
     count: int = Field(0, ge=0, le=1_000_000, description="A counter of the knitter's own.")
 
 
@@ -156,7 +158,7 @@ class KnittingPlace(BaseModel):
     """A place that is kept."""
 
     way: str = Field(description="`flat`, `round`, or the identifier of a machine.")
-    row: int
+    row: int = Field(description="Row at hand, counted from 0, which is before the first.")
     count: int
     changed_at: AwareDatetime
 

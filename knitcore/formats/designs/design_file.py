@@ -47,7 +47,7 @@ class DesignFile(DesignLayout):
     )
     chart: str = Field(
         max_length=MAX_TEXT,
-        description="K/P lines, or those of other stitches, the top row first, face side.",
+        description="K/P lines, the top row first, face side; or lines of other stitches.",
     )
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$")
 
