@@ -88,7 +88,7 @@ def _made(
 
 
 def complaints(made: Made, back_end: Path | None, folder: Path) -> list[str]:
-    """What the machine's profile and the public back end say against a program."""
+    """Complaints of the machine's profile and the public back end about a program."""
     if made.kind != ExportKind.KNITOUT or made.refusal:
         return []
     problems = [str(problem) for problem in check_program(made.content.decode(), made.machine)]

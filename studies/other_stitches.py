@@ -61,8 +61,8 @@ def main() -> None:
     print(f"cover lace {inside[lace].mean():.2f}, cables {inside[~lace].mean():.2f}")
     constants = swatches.fitted(CANDIDATES[IN_USE], np.ones(len(lace), dtype=bool))
     spread = np.linalg.inv(swatches.with_leans.T @ swatches.with_leans).diagonal() ** 0.5
-    for name, of_size, one in zip(KINDS_IN_USE, constants.T, spread, strict=True):
-        print(name, *(f"{c:.2f} ± {one * s:.2f}" for c, s in zip(of_size, sd, strict=True)))
+    for name, of_size, error in zip(KINDS_IN_USE, constants.T, spread, strict=True):
+        print(name, *(f"{c:.2f} ± {error * s:.2f}" for c, s in zip(of_size, sd, strict=True)))
 
 
 class Compared(NamedTuple):

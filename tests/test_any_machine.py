@@ -59,6 +59,8 @@ SUMMED = {
     "yarn/paper/bezier_relax.py": "whole numbers",
     "yarn/model/relaxed_cell.py": "seconds",
     "yarn/solve/search.py": "whole numbers",
+    "yarn/loops/relaxed_stitches.py": "whole numbers",
+    "yarn/loops/drawn_yarn.py": "whole numbers",
 }
 """Files of these rooms that use Python's sum, and why they may."""
 LINEAR = {

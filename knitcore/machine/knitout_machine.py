@@ -91,7 +91,7 @@ CrossedLoops = dict[frozenset[int], list[int]]
 
 @dataclass(frozen=True)
 class LoopState:
-    """What the needles hold before a pass of the carriage.
+    """Loops that the needles hold before a pass of the carriage.
 
     Attributes
     ----------

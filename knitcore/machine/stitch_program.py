@@ -137,7 +137,7 @@ class _StitchBody(ProgramBody):
             yield from self._worked(row, carrier)
 
     def _worked(self, row: int, carrier: int) -> Iterator[str]:
-        """What the carriage does at each needle."""
+        """The lines of what the carriage does at each needle."""
         columns = range(self._graph.columns)
         leftwards = is_leftwards(row)
         sign = "-" if leftwards else "+"

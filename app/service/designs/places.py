@@ -19,7 +19,7 @@ class Places:
         self._database = database
 
     def all(self, owner: str, design: str) -> KnittingPlaces:
-        """Those in a design, one for each way to knit it, the latest first."""
+        """The places in a design, one for each way to knit it, the latest first."""
         with self._database.read() as connection:
             find_design(connection, owner, design)
             rows = connection.execute(

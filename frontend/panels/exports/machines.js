@@ -44,9 +44,9 @@ export function machineField(studio, changed) {
       const { value } = choices(machines, studio.machine.value, use);
       return isOwn(value) ? (studio.machine.value ?? "") : value;
     },
-    /** @param {"programs" | "plans"} wanted */
-    showFor(wanted) {
-      use = wanted;
+    /** @param {"programs" | "plans"} chosen */
+    showFor(chosen) {
+      use = chosen;
       show();
     },
     /** @param {readonly Machine[]} known */

@@ -103,7 +103,7 @@ class WrittenStitch:
 
     @property
     def purl(self) -> bool:
-        """Whether it is purled, for pieces of knits and purls."""
+        """True where it is purled, for pieces of knits and purls."""
         return STITCHES[self.place].sites[0].purl
 
     @property

@@ -172,7 +172,7 @@ def test_a_cloth_of_another_size_is_framed_again(view: View) -> None:
 
 
 def test_a_narrow_view_is_seen_from_farther_and_a_turned_camera_stays(view: View) -> None:
-    """As on the whole screen of a phone, and back."""
+    """The cloth stays whole as on the screen of a phone, and back."""
     (client,) = view.server.get_clients().values()
     client.camera.position = np.array(view.server.initial_camera.position)
     _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 6)})
