@@ -67,6 +67,6 @@ def test_yarn_that_locks_is_refused_with_a_remedy() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("text", ["[2/2L];KKKK;KKKK;KKKK", "//OOOO\\\\K;KKKKKKKKK", "O^OK;KKKK"])
+@pytest.mark.parametrize("text", ["[2/2L];KKKK;KKKK;KKKK", "//OO;KKKK", "O^OK;KKKK"])
 def test_cables_and_wide_lace_come_to_rest(text: str) -> None:
     assert at_rest(text, StitchHistory.BLOCKED).converged
