@@ -102,7 +102,9 @@ def test_sign_in_paint_stretch_back_up_restore_upgrade(
 
     # as the program before the last schema left it
     running.sql(
-        "DROP TABLE own_materials; UPDATE alembic_version SET version_num='0008'", "earlier"
+        "DROP TABLE own_materials; DROP TABLE knitting_places; "
+        "UPDATE alembic_version SET version_num='0008'",
+        "earlier",
     )
     with _started_on(running, "earlier", token) as ada:
         assert _painted(ada, design) == chart
