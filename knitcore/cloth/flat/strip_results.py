@@ -24,6 +24,8 @@ from knitcore.law.stiffening import EXTENSION_START
 
 TAUT = 0.95
 """Share of its stretch from which cloth counts as taut."""
+_SAME = 1e-6
+"""Part by which two cells' uses of their stretch may differ and still count as equal."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -156,7 +158,9 @@ class SwatchTest(Result):
         if not self.states:
             return None
         used = self._utilisation(self.states[-1])
-        axis, row, column = np.unravel_index(int(np.argmax(used)), used.shape)
+        # the first of those that are equal but for rounding, on every processor
+        first = int(np.argmax(used >= (1 - _SAME) * used.max()))
+        axis, row, column = np.unravel_index(first, used.shape)
         grid = self.sheet.grid
         return LockUp(
             utilisation=float(used[axis, row, column]),

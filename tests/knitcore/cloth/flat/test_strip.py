@@ -359,3 +359,11 @@ def test_the_first_taut_cloth_has_its_place_on_the_curve() -> None:
     short = strip_test(chart, ACRYLIC, "wale", 0.9 * strain)
     assert short.first_taut is None
     assert 0.5 < short.tightest() < 0.95
+
+
+def test_of_cells_that_are_equally_near_to_lock_up_the_first_is_named() -> None:
+    """Garter is the same to the left and to the right of its middle, but for rounding."""
+    test = strip_test(StitchChart.of_fabric("garter", 8, 8), ACRYLIC, "wale", 0.3, steps=2)
+    lock_up = test.nearest_lock_up
+    assert lock_up is not None
+    assert lock_up.x_mm < test.sheet.grid.column_lines.mean()
