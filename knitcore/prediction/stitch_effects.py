@@ -6,10 +6,11 @@ stitch::
 
     ln size = ln mixture + exp(-share / 0.05) · ln folds + Σ effect · density
 
-``share`` counts the stitches that are neither knit nor purl, so that the answer is that of the
+``share`` counts yarn overs, crossings, slips and tucks, so that size and interval are those of the
 knits and purls where there are none. The effects are packaged data with their sources
 (``data/stitch_effects.csv``), made by ``studies/other_stitches.py``. How such cloth stretches
-nobody has measured: its law is that of its knits and purls, with an interval twice as wide.
+nobody has measured: its law is that of its knits and purls, and both ends of the intervals lie a
+factor of 2 farther.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ from knitcore.prediction.prediction import Along, Prediction, Source
 FADE = 0.05
 """Share of other stitches at which cloth folds 1/e as much as its knits and purls alone."""
 STRETCH_FACTOR = 2.0
-"""Factor by which the 90 % interval of strains and moduli is wider than that of knits and purls."""
+"""Factor by which either end of an interval of strains or moduli lies farther than for knits and
+purls."""
 KINDS = "yarn_overs", "leans", "crossings", "slips", "tucks"
 
 
@@ -131,9 +133,10 @@ def log_sizes(chart: SymbolChart, material: Material, plain: Prediction) -> tupl
     made_of = StitchDensities.of(chart)
     flat = np.log(Mixture.of(densities(chart.plain.repeat_cut()).shares, material).size_mm)
     folds = np.log([plain.relaxed_course_mm, plain.relaxed_wale_mm]) - flat
-    logs = flat + math.exp(-made_of.share / FADE) * folds
-    left = effects()["left"].log_sd
-    variance = left**2
+    fade = math.exp(-made_of.share / FADE)
+    logs = flat + fade * folds
+    own = np.array([plain.course.relaxed_log_sd, plain.wale.relaxed_log_sd])
+    variance = fade * own**2 + (1 - fade) * effects()["left"].log_sd ** 2
     for kind in KINDS:
         density, effect = getattr(made_of, kind), effects()[kind]
         logs = logs + density * effect.log_size
@@ -170,7 +173,7 @@ def with_other_stitches(
         for along, log, sd in zip((course, wale), logs, log_sd, strict=True)
     )
     used = [effects()[kind] for kind in _present(chart)]
-    sources = tuple(dict.fromkeys(effect.source for effect in used))
+    sources = tuple(dict.fromkeys(effect.source for effect in used)) or plain.size_errors
     return replace(
         changed, course=course, wale=wale, relaxed_source="other stitches", size_errors=sources
     )
@@ -184,7 +187,7 @@ def _present(chart: SymbolChart) -> list[str]:
 def _notes(chart: SymbolChart) -> list[str]:
     notes = [
         "How cloth with lace, cables, slips or tucks stretches has not been measured: the numbers "
-        "are those of its knits and purls, with intervals twice as wide."
+        "are those of its knits and purls, and both ends of their intervals a factor of 2 farther."
     ]
     guesses = [kind.replace("_", " ") for kind in _present(chart) if not effects()[kind].measured]
     if guesses:

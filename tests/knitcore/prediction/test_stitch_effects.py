@@ -81,3 +81,12 @@ def test_densities_count_pairs_that_cross() -> None:
     assert made_of.crossings == pytest.approx(4 / 18)
     assert made_of.crossed == pytest.approx(4 / 18)
     assert made_of.yarn_overs == made_of.slips == pytest.approx(1 / 18)
+
+
+def test_without_yarn_overs_or_crossings_size_and_interval_are_those_of_knits_and_purls() -> None:
+    twisted, plain = predict("BP;BP", ACRYLIC), predict("KP/KP", ACRYLIC)
+    assert sizes(twisted) == pytest.approx(sizes(plain))
+    for direction in Direction:
+        own, other = twisted.along(direction), plain.along(direction)
+        assert own.relaxed_log_sd == pytest.approx(other.relaxed_log_sd)
+    assert twisted.size_errors == plain.size_errors
