@@ -85,7 +85,7 @@ def stitch_in(words: str) -> StitchInWords | None:
     Examples
     --------
     >>> stitch_in("sl 1, k1, psso, k3")
-    StitchInWords(code='\\\\\\\\', often=1, length=14)
+    StitchInWords(code='\\\\', often=1, length=14)
     >>> stitch_in("c4f, k2").code
     '[2/2L]'
     """

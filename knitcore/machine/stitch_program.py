@@ -69,7 +69,7 @@ def stitch_program(
     Examples
     --------
     >>> stitch_program(SymbolChart.parse("O/KK;KKKK")).transfers
-    3
+    4
     """
     graph = chart.graph
     for row, column in np.argwhere(graph.turn != 0):
