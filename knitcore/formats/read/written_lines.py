@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from knitcore.base.errors import InputError
 from knitcore.chart.row_sides import Side
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE
-from knitcore.formats.read.written_words import MAX_CHARACTERS, NUMBER_WORDS, Line
+from knitcore.formats.read.written_row import Line
+from knitcore.formats.read.written_words import MAX_CHARACTERS, NUMBER_WORDS
 
 _I = re.IGNORECASE
 _ROW = r"(?P<name>rows?|rounds?|rnds?|rds?)"

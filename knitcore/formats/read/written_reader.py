@@ -29,15 +29,8 @@ from knitcore.formats.read.written_lines import (
     row_of,
     times_in,
 )
-from knitcore.formats.read.written_words import (
-    Line,
-    RowWords,
-    Work,
-    is_ambiguous,
-    keeps_count,
-    left,
-    read_row,
-)
+from knitcore.formats.read.written_row import Line, RowWords, Work, keeps_count, left
+from knitcore.formats.read.written_words import is_ambiguous, read_row
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows, symbols_from_rows
 
