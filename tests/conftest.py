@@ -6,12 +6,13 @@ import os
 import shutil
 import tempfile
 
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 settings.register_profile(
     "knitcore",
     deadline=None,  # how long an example takes is no property
     derandomize=True,  # a suite that was green stays green
+    phases=set(Phase) - {Phase.explain},  # its trace of what failed may never end on Python 3.11
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
 )
 settings.load_profile("knitcore")

@@ -38,10 +38,13 @@ class CarrierPlan:
     waste: int
     draw: int | None = None
 
-    def next_row(self, carrier: int, after: int) -> int | None:
-        """The next row that brings a carrier in again, if there is one."""
-        later = range(after + 1, len(self.rows))
-        return next((row for row in later if carrier in self.rows[row].new), None)
+    def next_row(self, carrier: int, first: int) -> int | None:
+        """The row from ``first`` on that brings a carrier in; it may be that which ends its block.
+
+        None if no row does.
+        """
+        rows = range(first, len(self.rows))
+        return next((row for row in rows if carrier in self.rows[row].new), None)
 
 
 def plan_carriers(piece: Piece, park: CarrierPark) -> CarrierPlan:

@@ -163,7 +163,7 @@ class WasteFeed(HookFeed):
             yield from _zigzag("tuck", needles, carrier, 0)
             yield from _zigzag("tuck", needles, carrier, 1)
             return
-        row = self._plan.next_row(carrier, -1)
+        row = self._plan.next_row(carrier, 0)
         on_left = row is None or not is_leftwards(row)
         mine = [n for n in needles if n % carriers == place] or [needles[0]]
         for index, needle in enumerate(mine):

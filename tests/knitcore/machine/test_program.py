@@ -170,6 +170,16 @@ def kniterate_lines(piece: Piece, finish: Finish = Finish.WASTE) -> list[str]:
     return knitout_program(piece, finish=finish, machine=profile("kniterate")).text.splitlines()
 
 
+@pytest.mark.parametrize("machine", [DEFAULT, KNITERATE.identifier])
+def test_a_carrier_ends_a_block_and_begins_another_in_one_row(machine: str) -> None:
+    """The blue block on the left ends where that on the right begins: one carrier is enough."""
+    yarns = (MAIN_YARN, PieceYarn("blue", "#1f3b70"))
+    colours = np.array([[1] * 4 + [0] * 8] * 2 + [[0] * 8 + [1] * 4] * 2)
+    chart = ShapedChart.rectangle(StitchChart.of_fabric(Fabric.STOCKINETTE, rows=4, columns=12))
+    program = verified(Piece(chart, yarns, colours), machine=profile(machine))
+    assert program.carriers == 2
+
+
 def test_a_kniterate_has_its_headers_at_the_top() -> None:
     assert kniterate_lines(DESIGNS["rib"])[:6] == [
         ";!knitout-2",
