@@ -30,6 +30,7 @@ def test_yarn_points_have_the_numbers_that_they_are_named_for() -> None:
     assert yarn.bending_modulus_n_mm2 / loop**3 == pytest.approx(1.5e-5)
 
 
+@pytest.mark.slow
 def test_tasks_name_yarn_and_chart() -> None:
     named = tasks()
     assert all(key.count(".") == 2 for key in named)

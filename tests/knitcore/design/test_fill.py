@@ -117,6 +117,7 @@ def test_a_uniform_target_is_met(index: int) -> None:
     assert not any("off" in message for message in field.messages)
 
 
+@pytest.mark.slow
 def test_a_target_between_the_repeats_is_met_by_a_mixture() -> None:
     """Stripes hidden in the target: no repeat of this small atlas comes near."""
     hidden = predict_repeat(StitchChart.parse("KKKKKKPKP\nKKKKKKKPK"), ACRYLIC)
@@ -290,6 +291,7 @@ def check_no_part_is_farther(partition: Partition, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.slow
 def test_no_part_is_farther_from_its_target_than_before(seed: int) -> None:
     """And what should be softer is nowhere stiffer."""
     check_no_part_is_farther(pieces_of_a_square(seed), seed)

@@ -55,12 +55,14 @@ def test_a_column_profile_under_a_course_wise_pull() -> None:
     assert swatch.width[10] == pytest.approx(0.9, abs=0.02)
 
 
+@pytest.mark.slow
 def test_unreachable_outlines_are_reported_with_reachable_ones() -> None:
     swatch = fill(np.full(16, 0.3))
     assert "Row" in swatch.messages[0]
     assert "of its width at a strain of 0.3" in swatch.messages[0]
 
 
+@pytest.mark.slow
 def test_it_reports_progress_and_can_be_cancelled() -> None:
     shares: list[float] = []
     fill(np.full(12, 0.95), progress=shares.append)

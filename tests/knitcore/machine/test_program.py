@@ -324,6 +324,7 @@ def test_a_single_bed_knits_a_plain_rectangle() -> None:
 LACE = material("lace-acrylic")
 
 
+@pytest.mark.slow
 def test_short_loops_are_staged_so_that_racking_spares_them() -> None:
     machine = profile("v-bed-half-gauge")
     short = LoopYarn.of(LACE, loop_length_mm=6.2)

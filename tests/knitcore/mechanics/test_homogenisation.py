@@ -55,6 +55,7 @@ def test_effective_stiffness_lies_between_the_bounds(chart, identifier):
 
 @settings(max_examples=25)
 @given(stitch_charts(5), st.data())
+@pytest.mark.slow
 def test_the_same_cloth_has_the_same_tensor(chart, data):
     yarn = material("cotton")
     shift = data.draw(st.tuples(st.integers(0, 4), st.integers(0, 4)))

@@ -9,6 +9,7 @@ from knitcore.base.errors import CancelledError
 from tests.app.command_line import refused, run
 
 
+@pytest.mark.slow
 def test_a_wide_rib_is_learned_and_ones_own_gauge_counts(
     client: TestClient, tmp_path: Path
 ) -> None:

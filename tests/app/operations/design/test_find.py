@@ -97,6 +97,7 @@ def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: Test
         assert client.post("/api/v1/fill", json=request | wrong).status_code == 422
 
 
+@pytest.mark.slow
 def test_an_outline_over_rest_and_on_the_command_line(
     client: TestClient, atlas: Path, tmp_path: Path
 ) -> None:

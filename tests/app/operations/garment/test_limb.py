@@ -50,6 +50,7 @@ def test_a_whole_chart_is_worn_and_shown(client: TestClient) -> None:
     assert len(colours) == 6 + 1  # of the rows, and of the limb
 
 
+@pytest.mark.slow
 def test_a_planned_sleeve_is_worn_with_the_stitches_of_its_rows(
     client: TestClient, tmp_path: Path
 ) -> None:
@@ -74,6 +75,7 @@ def test_a_planned_sleeve_is_worn_with_the_stitches_of_its_rows(
     solid(client, view | {"curl": {"id": worn["id"]}, "colour": "pressure"})
 
 
+@pytest.mark.slow
 def test_the_highest_pressure_is_among_the_places_and_in_the_warning(client: TestClient) -> None:
     bump = [(0, 165), (70, 165), (77, 200), (84, 165), (200, 165)]
     girths = [{"at_mm": at, "girth_mm": girth} for at, girth in bump]

@@ -32,6 +32,7 @@ def test_compare_gives_the_fields_of_the_contract(field: Path) -> None:
         assert out["frames"][1]["ux_rms_percent_width"] < 0.06
 
 
+@pytest.mark.slow
 def test_a_calibrated_law_can_be_compared(field: Path, tmp_path: Path) -> None:
     law = tmp_path / "law.json"
     calibrated = run("calibrate", field, *FABRIC, "--frame", "3", "--out", law)

@@ -33,6 +33,7 @@ def test_fit_gives_eight_constants_with_errors(client: TestClient, tests: list[P
     assert post(client, "fit", body | {"reduction": "published"}) == fitted
 
 
+@pytest.mark.slow
 def test_fit_writes_a_law_and_residuals(tmp_path: Path, tests: list[Path]) -> None:
     law, residuals = tmp_path / "law.json", tmp_path / "residuals.csv"
     fitted = run("fit", *tests, "--out", law, "--residuals", residuals)

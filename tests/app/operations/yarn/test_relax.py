@@ -113,6 +113,7 @@ def test_rows_with_changes_take_more_yarn_if_that_is_chosen(tmp_path: Path) -> N
         given.model_copy(update={"yarn_per_stitch": True}).check_parts(context)
 
 
+@pytest.mark.slow
 def test_the_gauge_of_a_relaxation_makes_predictions_of_a_simulated_material_more_certain(
     client: TestClient, tmp_path: Path
 ) -> None:
@@ -169,6 +170,7 @@ def test_a_fabric_rests_at_the_sizes_that_hysteresis_gives(client: TestClient) -
     assert plain["friction"] is plain["history"] is plain["rest_sizes"] is None
 
 
+@pytest.mark.slow
 def test_a_coefficient_alone_means_as_knitted(client: TestClient) -> None:
     body = {"chart": "K", "material": "acrylic", "friction": 0.4, "centre_lines": True}
     shape = client.post("/api/v1/relax", json=body).json()

@@ -22,6 +22,7 @@ def test_a_mesh_is_the_same_on_the_command_line_and_over_rest(client: TestClient
     assert run("relax-stitches", MESH, "--material", "acrylic") == shape | {"known": True}
 
 
+@pytest.mark.slow
 def test_the_yarn_of_a_stitch_may_be_given() -> None:
     long = run("relax-stitches", "BB", "--material", "acrylic", "--loop-length-mm", "12")
     short = run("relax-stitches", "BB", "--material", "acrylic", "--loop-length-mm", "11")

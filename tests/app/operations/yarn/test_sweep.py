@@ -23,6 +23,7 @@ def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> No
     assert any("Slide quenching" in note for note in held["notes"])
 
 
+@pytest.mark.slow
 def test_a_sweep_there_and_back_loses_energy_to_friction(client: TestClient) -> None:
     rubbed = "--friction", "0.26", "--there-and-back"
     swept = run("sweep", "stockinette", *ACRYLIC, *COURSE, *rubbed)
@@ -46,6 +47,7 @@ def test_a_sweep_there_and_back_loses_energy_to_friction(client: TestClient) -> 
     assert answer["stress_n_per_mm"] == pytest.approx(stress, rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_friction_stiffens_the_pull_and_its_law() -> None:
     free, rubbed = (
         run("sweep", "stockinette", *ACRYLIC, *COURSE, *friction)

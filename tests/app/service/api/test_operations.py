@@ -38,6 +38,7 @@ def test_a_large_chart_is_laid_in_a_worker(
     assert view.writer.drawing.ground.shape == (200, columns)
 
 
+@pytest.mark.slow
 def test_what_is_given_away_of_a_view_is_made_in_a_worker(
     client: TestClient, computed: list[Any]
 ) -> None:

@@ -73,6 +73,7 @@ def test_each_measurement_narrows_what_it_is_about() -> None:
     assert not yarn.notes
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_other_fabrics_of_the_library() -> None:
     inside = []
     for yarn in [*load_library().values()][::3]:

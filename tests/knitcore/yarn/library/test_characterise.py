@@ -35,6 +35,7 @@ def table() -> YarnTable:
     return made
 
 
+@pytest.mark.slow
 def test_the_json_of_a_repeat_is_reproducible() -> None:
     task = RepeatTask("K", COTTON.yarn, COTTON.loop_length_mm)
     once, again = characterise_repeat(task), characterise_repeat(task)
@@ -117,6 +118,7 @@ USUAL = "acrylic", "glove-wool"
         for name in sorted(load_library())
     ],
 )
+@pytest.mark.slow
 def test_every_yarn_of_the_library_can_be_characterised(name: str) -> None:
     """Other yarns than acrylic and cotton have labelled estimates of radius, core, k and p."""
     plan = plan_for_material(material(name), fabrics=[Fabric.RIB], tensions=[1.0])

@@ -117,6 +117,7 @@ def test_a_build_is_reproducible_and_resumes(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["acrylic", "cotton"])
+@pytest.mark.slow
 def test_every_stored_shape_is_knotted_like_its_chart(name):
     for chart in stored_charts(name):
         stored = stored_stitch(chart, name)
@@ -149,6 +150,7 @@ MIXED = ["KKP", "PPK", "KPP", "KKKP", "PPKP", "K/P/P", "PPK/PKP/KPP"]
 
 
 @pytest.mark.parametrize("text", PURE + MIXED)
+@pytest.mark.slow
 def test_it_is_that_of_the_chart_relaxed_as_it_was_asked_for(text: str) -> None:
     """Shifts, mirror images and the other side of the fabric have their own signs.
 

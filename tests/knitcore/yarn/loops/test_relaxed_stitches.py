@@ -42,12 +42,14 @@ def test_mirror_images_rest_alike(tmp_path: Path) -> None:
     assert len(meshio.read(tmp_path / "mesh.vtu").points) == right.centre_lines[..., 0].size
 
 
+@pytest.mark.slow
 def test_blocked_cloth_rests_flatter_than_agitated_cloth() -> None:
     blocked, agitated = (at_rest("O/;KK", of) for of in ("blocked", "agitated"))
     assert blocked.thickness_mm < agitated.thickness_mm
     assert np.prod(sizes(blocked)) > np.prod(sizes(agitated))
 
 
+@pytest.mark.slow
 def test_slipped_stitches_and_twists_draw_the_cloth_in() -> None:
     plain = at_rest("K")
     slipped, twisted = at_rest("VK;KK"), at_rest("B")

@@ -56,6 +56,7 @@ def test_every_stitch_may_have_a_length_of_its_own():
     assert repeat.converged
 
 
+@pytest.mark.slow
 def test_equal_stitch_lengths_are_one_loop_length():
     single = at_length("KP")
     table = relax(StitchChart.parse("KP"), YARN, np.full((1, 2), LENGTH))
@@ -87,6 +88,7 @@ def test_yarn_does_not_slide_out_of_a_plane():
 
 @pytest.mark.parametrize("rows", [4, pytest.param(8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
+@pytest.mark.slow
 def test_rib_of_any_height_stays_as_flat_as_its_repeat(yarn, rows):
     """Its rows do not tip to the front and to the back in turn."""
     entry, rib = sample(yarn, "rib"), StitchChart.parse("KP")

@@ -52,6 +52,7 @@ def test_published_energies_and_shares(known):
 
 
 @pytest.mark.parametrize(("course_mm", "energy"), [(2.80, 0.40451), (5.32, 0.89431)])
+@pytest.mark.slow
 def test_authors_example_curve(course_mm, energy):
     # their sample results for stockinette, core300x, first and last point
     entries = sample("acrylic", "stockinette").parameters
@@ -95,6 +96,7 @@ def test_conventions_weigh_the_same_stitch_differently():
     assert energies[0] < 0.9 * energies[1]
 
 
+@pytest.mark.slow
 def test_holding_a_size_costs_energy():
     known = sample("cotton", "rib")
     free = published(known, starts=1)
@@ -151,6 +153,7 @@ def test_jammed_unravelled_and_unfinished_stitches_are_refused():
         lowest(stitch, [replace(good, unknowns=swapped, certified=certified)])
 
 
+@pytest.mark.slow
 def test_a_size_beyond_the_yarn_is_refused():
     known = sample("cotton", "stockinette")
     with pytest.raises(ConvergenceError, match="natural"):

@@ -47,6 +47,7 @@ def test_published_moduli_of_cotton_stockinette():
     assert law.poisson_xy == pytest.approx(0.359, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_stretch_ends_beyond_the_requested_stress():
     course = cotton_stockinette(Direction.COURSE, points=7)
     assert course.stress_n_per_mm[-1] > 0.35 > course.stress_n_per_mm[-2]

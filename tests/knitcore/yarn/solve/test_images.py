@@ -44,6 +44,7 @@ def rested(text, way):
         ("KP/PP/KK", "held", "from the back"),
     ],
 )
+@pytest.mark.slow
 def test_an_image_has_the_shape_of_the_chart(text, way, image):
     original = rested(text, way)
     other = StitchChart(IMAGES[image](StitchChart.parse(text).purl))
@@ -57,6 +58,7 @@ def test_an_image_has_the_shape_of_the_chart(text, way, image):
     assert (turned_over.mirrored is None) == (original.mirrored is None)
 
 
+@pytest.mark.slow
 def test_the_yarn_of_a_mirrored_image_runs_the_other_way():
     chart = StitchChart.parse("KKP/KPP")
     grid = SplineGrid(12, 4)

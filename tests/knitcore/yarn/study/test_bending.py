@@ -119,6 +119,7 @@ def test_linear_response_is_the_second_derivative_of_the_relaxed_energy() -> Non
 
 
 @pytest.mark.parametrize("fabric", ["rib", "seed"])
+@pytest.mark.slow
 def test_coupling_and_twist_are_those_that_bending_along_the_diagonals_has(fabric: str) -> None:
     """D(45°) = (D_x + D_y) / 4 + (D₁ + 2 D₆₆) / 2, the mean over both diagonals."""
     bending = bending_response(without_mirrors(_relaxed(REPEATS[fabric], fabric)).state)
@@ -137,6 +138,7 @@ def test_a_state_that_is_not_a_minimum_without_mirrors_is_marked() -> None:
     assert _bending("K").minimum
 
 
+@pytest.mark.slow
 def test_the_state_that_an_instability_leads_to_is_bent_too() -> None:
     bending = repeat_bending(_relaxed("KP", "rib"))
     assert not bending.mirrored.minimum  # it is one in its repeat, but not in two of them

@@ -32,6 +32,7 @@ def _carried(plan: Array, height: Array, curvature: tuple[float, float, float]) 
 
 
 @given(curvatures, st.tuples(numbers, numbers), st.tuples(numbers, numbers))
+@pytest.mark.slow
 def test_distance_of_two_points_that_are_carried_along(
     curvature: tuple[float, float, float], way: tuple[float, float], heights: tuple[float, float]
 ) -> None:
@@ -43,6 +44,7 @@ def test_distance_of_two_points_that_are_carried_along(
 
 
 @given(curvatures, st.integers(0, 100))
+@pytest.mark.slow
 def test_derivatives_of_a_yarn_that_is_carried_along(
     curvature: tuple[float, float, float], seed: int
 ) -> None:

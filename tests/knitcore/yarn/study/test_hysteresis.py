@@ -43,6 +43,7 @@ def test_the_area_of_the_loop_is_the_work_against_friction(loop):
     assert loop.notes == ()
 
 
+@pytest.mark.slow
 def test_a_loop_near_locking_changes_little_with_more_points(stockinette):
     coarse, fine = (
         hysteresis(stockinette, "wale", 0.3, 0.25, points=points, cycles=1) for points in (24, 48)

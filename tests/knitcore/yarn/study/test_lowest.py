@@ -45,6 +45,7 @@ def test_an_instability_is_followed_to_a_lower_minimum():
 
 
 @pytest.mark.parametrize("text", ["KP", "KKP"])
+@pytest.mark.slow
 def test_where_a_saddle_leads_does_not_hang_on_the_last_digits(text, monkeypatch):
     """Nor on how far it is left: the start is shaken by a billionth of the radius."""
     entry = sample("cotton", "rib")

@@ -157,6 +157,7 @@ def test_a_large_repeat_has_no_mirrors_unless_asked_for(monkeypatch):
     assert kinds == [Branch.FREE, Branch.MIRRORED]
 
 
+@pytest.mark.slow
 def test_the_free_branch_continues_from_the_lowest_mirrored_state():
     """Broken rib of acrylic: the second start of the mirrored branch ends 11 % lower."""
     chart = StitchChart.parse("KP\nKK")
@@ -218,6 +219,7 @@ def test_impossible_input_is_refused_with_a_remedy(field, options, remedy):
 LARGE = StitchChart(np.random.default_rng(1).random((4, 4)) < 0.5)
 
 
+@pytest.mark.slow
 def test_large_cells_also_begin_with_rounds_and_end_other_minima_as_either_start():
     entry = sample("cotton", "stockinette")
     direct = relaxed(LARGE, entry, starts=[Start("usual")])
@@ -229,6 +231,7 @@ def test_large_cells_also_begin_with_rounds_and_end_other_minima_as_either_start
     assert rounds.energy_n_mm < (1.0 + SAME_ENERGY) * direct.energy_n_mm
 
 
+@pytest.mark.slow
 def test_the_largest_cells_are_relaxed_in_windows(monkeypatch):
     monkeypatch.setattr(relax_module, "WINDOWS_FROM", 12)
     entry = sample("cotton", "stockinette")

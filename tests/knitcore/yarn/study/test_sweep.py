@@ -50,6 +50,7 @@ def test_the_law_of_a_sample_is_near_the_published_simulation(zero):
     assert law.modulus_wale == pytest.approx(0.536, rel=0.2)
 
 
+@pytest.mark.slow
 def test_yarn_pulled_straight_ends_the_sweep_with_a_note(zero):
     curve = sweep(zero, "course", 5.0, points=12, back=False)
     assert len(curve.cells) < 12
@@ -74,6 +75,7 @@ def test_impossible_stretches_are_refused(zero, problem, direction, strain, opti
         sweep(zero, direction, strain, **options)
 
 
+@pytest.mark.slow
 def test_a_stretch_that_buckles_jumps_however_many_points_it_has():
     """Acrylic seed pulled wale-wise leaves the plane (paper, Supplementary Fig. 8): both states
     have the same energy there, so that the work balances."""
@@ -100,6 +102,7 @@ def test_a_held_state_is_refused_as_rest():
         sweep(held, "wale", 0.1)
 
 
+@pytest.mark.slow
 def test_a_stretch_that_opens_at_another_strain_than_it_folds_jumps_once():
     entry = stored_stitch(StitchChart.parse("KK\nKP"), "cotton")
     rest = relax(entry.chart, entry.yarn, entry.loop_length_mm, branch="mirrored")

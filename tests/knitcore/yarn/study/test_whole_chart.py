@@ -193,6 +193,7 @@ def test_a_chart_is_settled_when_neither_energy_nor_size_changes_much() -> None:
     assert narrower.change == pytest.approx(0.01)  # a tenth of the size's
 
 
+@pytest.mark.slow
 def test_progress_is_told_of_yarn_without_a_core() -> None:
     shares: list[float] = []
     yarn = YarnModel(0.045, 3e-3, 2.4, 0.74, 0.0)
@@ -203,6 +204,7 @@ def test_progress_is_told_of_yarn_without_a_core() -> None:
     assert 0.1 <= min(shares) <= max(shares) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_loop_lengths_repeat_with_the_chart() -> None:
     chart = StitchChart.parse("K\nP").resized(4, 2)
     short, long = 0.98 * SAMPLE.loop_length_mm, SAMPLE.loop_length_mm

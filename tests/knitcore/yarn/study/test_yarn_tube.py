@@ -47,6 +47,7 @@ def test_stockinette_curls_the_way_of_its_tube(stockinette: RelaxedRepeat) -> No
     "wales",
     [80, pytest.param(24, marks=pytest.mark.slow)],  # in a tube of 24 a step fails and is halved
 )
+@pytest.mark.slow
 def test_a_shifted_repeat_makes_the_same_tube(wales: int) -> None:
     repeats = (relaxed(text, sample("cotton", Fabric.RIB), branch="mirrored") for text in REPEATS)
     tubes = [in_the_round(repeat, wales) for repeat in repeats]
