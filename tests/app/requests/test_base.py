@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from app.requests.base import decoded
+from app.requests.base import MAX_LISTED, InvalidRequestError, RequestModel, decoded, read
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
@@ -21,3 +21,18 @@ def test_a_name_comes_once_and_characters_are_whole() -> None:
     for text, why in (('{"a": 1, "a": 2}', "twice"), ('{"a": "\\ud800"}', "half of a character")):
         with pytest.raises(json.JSONDecodeError, match=why):
             decoded(text)
+
+
+class _Numbers(RequestModel):
+    numbers: list[int]
+
+
+def test_a_great_many_faults_are_told_as_one() -> None:
+    faults: dict[int, list[int]] = {}
+    for count in (MAX_LISTED, MAX_LISTED + 1):
+        names = json.dumps(dict.fromkeys(range(count - 1), 1))  # and one is missing
+        for sent in (json.dumps({"numbers": ["x"] * count}), names):
+            with pytest.raises(InvalidRequestError) as refused:
+                read(_Numbers, sent)
+            faults.setdefault(count, []).append(len(refused.value.errors()))
+    assert faults == {MAX_LISTED: [MAX_LISTED] * 2, MAX_LISTED + 1: [1] * 2}
