@@ -4,13 +4,13 @@ from typing import Any
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-from ..service.web.unread import Watched
+from ..service.web.unread import EndingStalled
 
 ALLOW = "knitcore.allow_bytes"
 """Name of the extension of a connection's scope: a function that sets the largest message."""
 
 
-class SizedProtocol(Watched, WebSocketsSansIOProtocol):
+class SizedProtocol(EndingStalled, WebSocketsSansIOProtocol):
     """uvicorn's protocol of websockets, whose largest message may change while it is open.
 
     A longer message is refused by its head, before any of it is held in memory. What is sent has

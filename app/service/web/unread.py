@@ -27,7 +27,7 @@ LEAST_BYTES = 65_536
 """Size of that part: with less, one byte now and then would keep a large answer for ever."""
 
 
-class Watched:
+class EndingStalled:
     """Part of a protocol of uvicorn: closes a connection whose client reads no more."""
 
     loop: asyncio.AbstractEventLoop
@@ -81,7 +81,7 @@ class Watched:
         return unread
 
 
-class WatchedProtocol(Watched, HttpToolsProtocol):
+class WatchedProtocol(EndingStalled, HttpToolsProtocol):
     """HTTP that keeps no connection whose client reads no more, or whose head has no end; uvicorn's
     would."""
 
