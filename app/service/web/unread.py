@@ -23,6 +23,7 @@ STALLED_S = 30.0
 """Time in which a client must take a part of an answer, or the rest of it."""
 MAX_HEAD_BYTES = 65_536
 """Longest head of a request; a proxy allows half of it."""
+MAX_HEADERS = 200
 LEAST_BYTES = 65_536
 """Size of that part: with less, one byte now and then would keep a large answer for ever."""
 
@@ -100,8 +101,14 @@ class WatchedProtocol(EndingStalled, HttpToolsProtocol):
         self._head_bytes = 0
         super().on_message_begin()
 
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """Read a header, one of few."""
+        if len(self.headers) == MAX_HEADERS:
+            raise HttpParserError
+        super().on_header(name, value)
+
     def on_headers_complete(self) -> None:
-        """Refuse a long head that came at once, before it is looked through."""
+        """Refuse a long head that came at once."""
         self._head_bytes = None
         if sum(len(name) + len(value) + 4 for name, value in self.headers) > MAX_HEAD_BYTES:
             raise HttpParserError
