@@ -31,6 +31,8 @@ MAX_HANDLES = 65_536
 SWITCH_S = 0.0005
 """Longest time that a thread keeps Python's interpreter while the event loop waits for it. The loop
 waits several times in each request, so that Python's default of 5 ms would add up."""
+MAX_DIGITS = 640
+"""Longest whole number that is read, the least that Python allows: time grows with the square."""
 SPARE_HANDLES = 400
 """File handles that are kept for databases, workers, views and files."""
 
@@ -87,6 +89,7 @@ def _prepared(settings: Settings, address: str) -> Iterator[Database]:
 def serve_on(settings: Settings, listener: socket.socket, database: Database) -> None:
     """Serve a database on an open socket until a signal ends the service."""
     sys.setswitchinterval(SWITCH_S)
+    sys.set_int_max_str_digits(MAX_DIGITS)
     with loading():
         import uvicorn
 

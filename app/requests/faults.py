@@ -128,6 +128,7 @@ _REMEDIES = {
     "int_parsing": "Use a whole number.",
     "int_from_float": "Use a whole number.",
     "float_parsing": "Use a number.",
+    "too_many_faults": "Compare it with the example in /docs.",
 }
 """Remedies by pydantic's type of error; fields in braces come from its context."""
 OF_VALUES = frozenset(_REMEDIES) - {"missing", "extra_forbidden", *_OBJECTS}

@@ -125,6 +125,7 @@ async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> No
                 subprotocols=list(socket.scope["subprotocols"]) or None,
                 additional_headers=RELAY_HEADERS,
                 max_size=None,
+                max_queue=0,  # the next message is read when the browser has got this one
                 compression=None,
             )
         except (OSError, websockets.InvalidHandshake):  # the view was closed just now

@@ -114,6 +114,42 @@ def _unread(client: httpx.Client, turn: int) -> None:
         time.sleep(3)
 
 
+def _unread_view(client: httpx.Client, turn: int) -> None:
+    """Browsers that read nothing of a view of 40,000 stitches, each unlike its neighbours."""
+    name = f"unread-{turn % 2}"
+    chart = "\n".join("".join(_random.choices("KP", k=200)) for _ in range(200))
+    upgrade = (
+        f"GET /view/{name} HTTP/1.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+        f"Sec-WebSocket-Protocol: viser-v{viser.__version__}"
+    )
+    with contextlib.suppress(OSError), contextlib.ExitStack() as open_ones:
+        for _ in range(3):
+            open_ones.enter_context(_connected(client, upgrade))
+        client.put(f"/api/v1/views/{name}", json=CHART | {"chart": chart})
+        time.sleep(3)
+
+
+def _endless_head(client: httpx.Client, turn: int) -> None:
+    """Headers of nothing, as long as the service takes them."""
+    del turn
+    with contextlib.suppress(OSError), _connected(client, "GET /healthz HTTP/1.1") as connection:
+        connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n")
+        for _ in range(1_000):
+            connection.sendall(b"X:\r\n" * 1_000)
+
+
+def _painted(client: httpx.Client, turn: int) -> httpx.Response:
+    """Strokes on charts of a million stitches."""
+    if (design := _large_designs.get(client)) is None:
+        body = {"name": "x", "material": "acrylic", "chart": BIG_CHART}
+        design = client.post("/api/v1/designs", json=body).json()["id"]
+        _large_designs[client] = design
+    run = {"row": turn % 1000, "column": 0, "stitches": "P"}
+    strokes = {"rows": 1000, "columns": 1000, "runs": [run]}
+    return client.post(f"/api/v1/designs/{design}/strokes", json=strokes)
+
+
 def _wrong_token(client: httpx.Client, turn: int) -> httpx.Response:
     wrong = {"Authorization": f"Bearer {turn:032}"}
     return client.get("/api/v1/designs", headers=wrong)
@@ -149,6 +185,7 @@ def _frames(client: httpx.Client, turn: int) -> None:
 
 
 _random = random.Random(1)
+_large_designs: dict[httpx.Client, str] = {}
 ATTACKS: dict[str, Attack] = {
     "none": lambda client, _: time.sleep(0.2),
     "predictions of large charts": _post("/api/v1/predict", CHART | {"chart": BIG_CHART}),
@@ -157,6 +194,15 @@ ATTACKS: dict[str, Attack] = {
     ),
     "140,000 JSON values": _post("/api/v1/predict", b"[" + b"1," * 140_000 + b"1]"),
     "deep JSON": _post("/api/v1/predict", b'{"chart":' * 10_000),
+    "140,000 wrong names": _post(
+        "/api/v1/designs", b"{" + b",".join(b'"%d":1' % n for n in range(140_000)) + b"}"
+    ),
+    "a name that comes twice": _post(
+        "/api/v1/predict", b"{" + b",".join(b'"%d":1' % n for n in range(7_000)) + b',"6999":1}'
+    ),
+    "numbers of 4,000 digits": _post(
+        "/api/v1/designs", b"[" + b",".join([b"9" * 4_000] * 900) + b"]"
+    ),
     "designs of 2 MB": _post(
         "/api/v1/designs", {"name": "x", "material": "acrylic", "chart": BIG_CHART}
     ),
@@ -183,7 +229,10 @@ ATTACKS: dict[str, Attack] = {
         "/api/v1/measure/tables", {"file": _uploaded("a.csv", b"," * 200_000)}
     ),
     "slow bodies": _slow_body,
+    "endless heads": _endless_head,
+    "strokes on large charts": _painted,
     "unread answers": _unread,
+    "unread views": _unread_view,
     "wrong tokens": _wrong_token,
     "own yarns": _kept_yarn,
     "views of large charts": _viewed,

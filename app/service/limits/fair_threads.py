@@ -1,16 +1,17 @@
 """Threads that many users get one after the other."""
 
 import threading
-from collections import Counter, OrderedDict, deque
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import Any, TypeVar
 
 from ..identity import current_user
+from .turns import Turns
 
 T = TypeVar("T")
-Task = tuple[str, Future[Any], Callable[[], Any]]
+Task = tuple[Future[Any], Callable[[], Any]]
 
 
 class FairThreads(ThreadPoolExecutor):
@@ -27,16 +28,15 @@ class FairThreads(ThreadPoolExecutor):
     def __init__(self, threads: int, most_each: int) -> None:
         super().__init__(threads, "service")
         self._most_each = most_each
-        self._lanes: OrderedDict[str, deque[Task]] = OrderedDict()
+        self._tasks = Turns[Task]()
         self._held: Counter[str] = Counter()
         self._turns = threading.Lock()
 
     def submit(self, function: Callable[..., T], /, *args: Any, **more: Any) -> Future[T]:
         """Let the present user stand in line."""
-        owner, future = current_user.get(), Future[T]()
+        future = Future[T]()
         with self._turns:
-            lane = self._lanes.setdefault(owner, deque())
-            lane.append((owner, future, partial(function, *args, **more)))
+            self._tasks.add(current_user.get(), (future, partial(function, *args, **more)))
         super().submit(self._work)
         return future
 
@@ -44,7 +44,7 @@ class FairThreads(ThreadPoolExecutor):
         """Do what is in turn, as long as there is something: threads that came while all users in
         line held as many as they may have left."""
         while (task := self._next()) is not None:
-            owner, future, function = task
+            owner, (future, function) = task
             try:
                 if future.set_running_or_notify_cancel():
                     future.set_result(function())
@@ -54,15 +54,9 @@ class FairThreads(ThreadPoolExecutor):
                 self._held -= Counter([owner])
             del task, future, function  # a thread that waits keeps no results
 
-    def _next(self) -> Task | None:
+    def _next(self) -> tuple[str, Task] | None:
         with self._turns:
-            for owner, lane in self._lanes.items():
-                if self._held[owner] < self._most_each:
-                    task = lane.popleft()
-                    self._held[owner] += 1
-                    if lane:
-                        self._lanes.move_to_end(owner)
-                    else:
-                        del self._lanes[owner]
-                    return task
-        return None
+            task = self._tasks.next(lambda owner: self._held[owner] < self._most_each)
+            if task is not None:
+                self._held[task[0]] += 1
+            return task

@@ -90,8 +90,8 @@ class UserLimits:
     kept_bytes : designs and their versions together.
     job_bytes : requests of jobs, together; those that ended the longest ago make room.
     body_bytes : bodies of requests that are open, together.
-    unsent_bytes : large answers that their clients have not read yet, together; results of jobs are
-        read from the database as they are sent, and do not count.
+    unsent_bytes : large answers and messages of views that their clients have not read yet,
+        together; results of jobs are read from the database as they are sent, and do not count.
     """
 
     connections: int = 128

@@ -3,10 +3,11 @@
 import asyncio
 import contextlib
 import logging
-import queue
 import threading
-from collections.abc import Callable, Iterator, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,6 +28,8 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from knitcore.base.errors import InputError
 
+from ..identity import current_user
+from ..limits.turns import Turns
 from ..problems import DamagedError, StoreError, StoreFullError
 from .backend import Backend
 from .sqlite import SqliteFile
@@ -34,12 +37,15 @@ from .sqlite import SqliteFile
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")
 Action = Callable[[Connection], Any]
+Change = tuple[Action, Future[Any]]
 
 FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
 """Failures of the database itself; other errors come from a statement or from this program."""
 FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
 MAX_BATCH = 64
+BATCH_S = 0.02
+"""Time after which no other change shares a commit."""
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); {outcome}."
 UNCHANGED = "nothing was changed"
 UNKNOWN = "the change may not have been made"
@@ -51,8 +57,9 @@ class Database:
     Notes
     -----
     SQLite allows one writer at a time and flushes the disk at every commit. One thread writes:
-    changes that arrive while it flushes share the next commit, each behind its own savepoint. A
-    change is acknowledged after the commit that holds it. PostgreSQL needs none of this.
+    changes that arrive while it flushes share the next commit, each behind its own savepoint, and
+    users take turns. A change is acknowledged after the commit that holds it. PostgreSQL needs none
+    of this.
 
     Parameters
     ----------
@@ -69,7 +76,9 @@ class Database:
         self.backend.open()
         self.engine = self.backend.engine
         self._is_damaged = False
-        self._waiting: queue.SimpleQueue[tuple[Action, Future[Any]] | None] = queue.SimpleQueue()
+        self._waiting = Turns[Change]()
+        self._handed_in = threading.Condition()
+        self._is_closing = False
         self._writer: threading.Thread | None = None
         if self.backend.one_writer:
             self._writer = threading.Thread(target=self._write_all, name="store", daemon=True)
@@ -227,7 +236,9 @@ class Database:
     def close(self) -> None:
         """Write pending changes, then close all connections; doing so again has no effect."""
         if self._writer is not None:
-            self._waiting.put(None)
+            with self._handed_in:
+                self._is_closing = True
+                self._handed_in.notify()
             self._writer.join()
             self._writer = None
         self.backend.close()
@@ -244,40 +255,48 @@ class Database:
 
     def _hand_in(self, action: Callable[[Connection], T]) -> Future[T]:
         done: Future[T] = Future()
-        self._waiting.put((action, done))
+        with self._handed_in:
+            self._waiting.add(current_user.get(), (action, done))
+            self._handed_in.notify()
         return done
 
-    def _write_all(self) -> None:
-        open_ = True
-        while open_:
-            batch = []
-            entry = self._waiting.get()
-            while entry is not None:
-                if entry[1].set_running_or_notify_cancel():  # not cancelled meanwhile
-                    batch.append(entry)
-                if len(batch) == MAX_BATCH:
-                    break
-                try:
-                    entry = self._waiting.get_nowait()
-                except queue.Empty:
-                    break
-            open_ = entry is not None
-            if batch:
-                self._commit(batch)
+    def _next(self, *, wait: bool) -> Change | None:
+        """Take the change whose turn it is, unless it was cancelled; None if there is none."""
+        while True:
+            with self._handed_in:
+                while (turn := self._waiting.next()) is None and wait and not self._is_closing:
+                    self._handed_in.wait()
+            if turn is None or turn[1][1].set_running_or_notify_cancel():
+                return turn and turn[1]
 
-    def _commit(self, batch: list[tuple[Action, Future[Any]]]) -> None:
+    def _write_all(self) -> None:
+        while (change := self._next(wait=True)) is not None:
+            batch = [change]
+            self._commit(batch, self._others(batch))
+
+    def _others(self, batch: list[Change]) -> Iterator[Change]:
+        """Add to a batch what waits beside its first change."""
+        until = time.monotonic() + BATCH_S
+        while len(batch) < MAX_BATCH and time.monotonic() < until:
+            if (change := self._next(wait=False)) is None:
+                return
+            batch.append(change)
+            yield change
+
+    def _commit(self, batch: list[Change], others: Iterable[Change] = ()) -> None:
+        """Make the first change of a batch, and others that are added to it meanwhile."""
         outcomes: list[tuple[Future[Any], Any, Exception | None]] = []
-        attempt = _attempt if len(batch) > 1 else _do
         try:
             with self.engine.connect() as connection:
                 connection.execution_options(knitcore_write=True)
                 with connection.begin():
-                    for action, done in batch:
-                        outcomes.append((done, *attempt(connection, action)))
+                    for action, done in chain(batch[:1], others):
+                        outcomes.append((done, *_attempt(connection, action)))
+                    self.backend.check()  # some came after it had begun
         except Exception as error:
             if len(batch) > 1:
-                for entry in batch:  # one by one, so that only the failing change is refused
-                    self._commit([entry])
+                for change in batch:  # one by one, so that only the failing change is refused
+                    self._commit([change])
             else:
                 batch[0][1].set_exception(error)
             return
@@ -325,11 +344,6 @@ def _failures(outcome: str = UNCHANGED) -> Iterator[None]:
         if not (is_lost or isinstance(error, FAILURES)):
             raise
         raise _failed(reason, outcome) from error
-
-
-def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
-    """An action alone in its transaction, which an error ends."""
-    return action(connection), None
 
 
 def _attempt(connection: Connection, action: Action) -> tuple[Any, Exception | None]:

@@ -48,6 +48,8 @@ OPENED_BY = "knitcore.opened_by"
 """Token and session of a request, in its scope."""
 LIMITS = "knitcore.limits"
 """Headers of the answer about the user's rate of requests, in the scope."""
+ON_THEIR_WAY = 3
+"""Messages of a view that one unread by its browser keeps in memory: itself and two behind it."""
 LOGIN_FAILURES = 20
 """Unknown tokens that one address may try before it must wait 10 s for each. A right token is
 always accepted: 256 random bits cannot be guessed, and a stranger cannot lock others out."""
@@ -166,7 +168,14 @@ class AccessControl:
         if answer is not None:
             await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
             return
-        answered = Answer(send)
+        concurrency: ConcurrencyLimit = scope["app"].state.concurrency
+
+        async def send_counted(message: Message) -> None:
+            with concurrency.growing("unsent_bytes", current_user.get()) as count:
+                count(ON_THEIR_WAY * len(message.get("bytes") or b""))
+                await send(message)
+
+        answered = Answer(send_counted)
 
         async def heard() -> Message:
             return answered.heard(await receive())

@@ -22,6 +22,7 @@ from app.service.limits.user_limits import (
 from tests.app.clients import closed_with, limited, login, served, state_of, watching
 from tests.app.jobs import never
 from tests.app.rest import draw
+from tests.app.running import wait_until
 
 
 def test_what_users_hold_is_counted_and_released() -> None:
@@ -105,5 +106,8 @@ def test_streams_pictures_and_watchers_are_bounded(client: TestClient) -> None:
             assert (answer.status_code, answer.json()["type"]) == (429, "/problems/too-many")
             assert answer.json()["remedy"]
         with watching(client, "/view/a-view"):
+            assert closed_with(client, "/view/a-view") == 1013
+        wait_until(lambda: not limit.held("watchers", LOCAL_USER))
+        with limited(client, unsent_bytes=100):
             assert closed_with(client, "/view/a-view") == 1013
         assert not any(limit.held(what, LOCAL_USER) for what in ("watchers", "streams", "pictures"))

@@ -16,7 +16,9 @@ from sqlalchemy import Connection, event, text
 from sqlalchemy.exc import DBAPIError, IntegrityError, ProgrammingError
 from sqlalchemy.schema import CreateIndex, CreateTable
 
+from app.service.identity import current_user
 from app.service.problems import StoreError
+from app.service.store import database as database_module
 from app.service.store.database import Database
 from app.service.store.schema import migrate, revision
 from app.service.store.tables import metadata
@@ -107,7 +109,10 @@ async def _inserting(database: Database, value: int) -> AsyncIterator[None]:
     await opening
 
 
-async def test_waiting_changes_share_a_commit_and_fail_alone(file: Database) -> None:
+async def test_waiting_changes_share_a_commit_and_fail_alone(
+    file: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(database_module, "BATCH_S", 60.0)
     database = file
     _table(database)
     commits: list[int] = []
@@ -119,7 +124,25 @@ async def test_waiting_changes_share_a_commit_and_fail_alone(file: Database) -> 
     refused = [isinstance(outcome, IntegrityError) for outcome in outcomes]
     assert refused == [False] * 9 + [True] * 5  # 10 to 14 repeat 0 to 4
     assert _values(database) == list(range(10))
-    assert len(commits) == 2
+    assert len(commits) == 1
+
+
+async def test_nobody_waits_for_all_changes_of_another(
+    file: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(database_module, "BATCH_S", 0.0)
+    _table(file)
+    order: list[str] = []
+
+    async def write(user: str) -> None:
+        current_user.set(user)
+        await file.written(lambda _: order.append(user))
+
+    async with _inserting(file, 0):
+        rest = [asyncio.create_task(write(user)) for user in ("ada", "ada", "ada", "bob")]
+        await asyncio.sleep(0)
+    await asyncio.gather(*rest)
+    assert order == ["ada", "bob", "ada", "ada"]
 
 
 async def test_a_change_whose_caller_has_gone_is_not_made(file: Database) -> None:

@@ -1,4 +1,5 @@
-"""A connection whose client does not read its answer is closed; one that reads slowly is not."""
+"""A connection whose client does not read its answer, or sends a head without end, is closed; one
+that reads slowly is not."""
 
 import contextlib
 import os
@@ -12,7 +13,7 @@ import pytest
 from starlette.types import Receive, Scope, Send
 
 from app.service.web import unread
-from app.service.web.unread import LEAST_BYTES, WatchedProtocol
+from app.service.web.unread import LEAST_BYTES, MAX_HEAD_BYTES, WatchedProtocol
 from tests.app.running import on_a_server
 
 CONTENT = os.urandom(20_000_000)  # more than the buffers of a system hold
@@ -74,3 +75,19 @@ def test_a_slow_reader_gets_everything(client: tuple[socket.socket, Event]) -> N
         received += len(connection.recv(PART, socket.MSG_WAITALL))
         if time.monotonic() - began < 3:  # far longer than an answer may stand still
             time.sleep(0.1)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"".join(b"X-%d:\r\n" % number for number in range(10_000)) + b"\r\n",
+        b"X: " + b"x" * 2 * MAX_HEAD_BYTES,
+        b"".join(b"X-%d: %s\r\n" % (number, b"x" * 1_000) for number in range(100)),
+    ],
+    ids=["at once", "in a word", "without end"],
+)
+def test_a_long_head_is_refused(client: tuple[socket.socket, Event], head: bytes) -> None:
+    connection, _ = client
+    with socket.create_connection(connection.getpeername()) as other:
+        other.sendall(b"GET / HTTP/1.1\r\nHost: here\r\n" + head)
+        assert other.recv(PART).startswith(b"HTTP/1.1 400")
