@@ -12,7 +12,7 @@ from knitcore.chart.stitch_kinds import STITCHES
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.read.knitout_reader import knitted_chart, knitted_stitches, verified
 from knitcore.garment.piece import Piece
-from knitcore.machine.profile import MachineProfile, profile, profiles
+from knitcore.machine.profile import profile
 from knitcore.machine.program import Finish
 from knitcore.machine.program_check import check_program
 from knitcore.machine.setting import setting_of
@@ -45,34 +45,6 @@ def test_programs_knit_their_charts(chart: SymbolChart) -> None:
         read = knitted_stitches(program.text).content
         assert isinstance(read, SymbolChart) or chart.is_plain
         assert read == chart if isinstance(read, SymbolChart) else read.chart == chart.plain
-
-
-MACHINES = [machine for machine in profiles().values() if machine.reads_programs]
-
-
-@settings(max_examples=4)
-@given(symbol_charts(most_rows=2, most_columns=6, turned=False), st.sampled_from(Finish))
-@pytest.mark.parametrize("machine", MACHINES, ids=lambda machine: machine.identifier)
-def test_every_machine_knits_them_or_says_why_not(
-    machine: MachineProfile, chart: SymbolChart, finish: Finish
-) -> None:
-    machine = replace(machine, waste_passes=4)
-    setting = setting_of(Piece.plain(chart.plain), machine, material("glove-wool"))
-    try:
-        made = verified(
-            chart,
-            finish=finish,
-            machine=machine,
-            stitch_number=setting.number,
-            yarn=setting.yarn,
-            looser=setting.looser,
-        )
-    except InputError as refusal:
-        assert refusal.remedy  # noqa: PT017 - a refusal with its reason is right
-    else:
-        kinds = {problem.subject for problem in check_program(made.text, machine)}
-        assert kinds <= {"passes"}
-        assert bool(kinds) == bool(made.tuck_passes)
 
 
 @pytest.mark.parametrize("lace", ["KO/KKK\\OK;KKKKKKKKK", "PO)PPP(OP;PPPPPPPPP"])
