@@ -99,6 +99,20 @@ def test_stitch_size_roller_and_speed_are_set_for_waste_and_for_the_piece(
         assert "; course 1" in piece
 
 
+@of_each(PROGRAMMED)
+def test_the_user_is_told_what_to_thread_and_to_take_off(machine: MachineProfile) -> None:
+    for piece in designs().values():
+        for finish in Finish:
+            made = knitout_program(piece, machine=machine, finish=finish)
+            words = " ".join(made.steps)
+            knitting = re.findall(r"^(?:knit|tuck) . \S+ (\d+)$", made.text, re.MULTILINE)
+            threaded = re.findall(r"(?:carrier|;) (\d+) ", made.steps[0])
+            assert threaded == sorted(set(knitting))
+            assert ("draw thread" in words) == ("; draw thread" in made.text)
+            assert ("waste" in words) == (len(threaded) > made.carriers)
+            assert ("bound off" in words) == (finish is Finish.BIND_OFF)
+
+
 @of_each(ALL)
 def test_shaping_with_pattern_and_colours_gives_a_file(machine: MachineProfile) -> None:
     """And not a button that does nothing."""

@@ -132,6 +132,7 @@ def program_report(
     price_per_hour: float | None = None,
     *,
     tex_of_carriers: Mapping[str, float] | None = None,
+    looser: Mapping[float, LoopYarn] | None = None,
 ) -> ProgramReport:
     """Report the figures of a program on a machine.
 
@@ -142,6 +143,7 @@ def program_report(
     yarn : of all carriers, with the loop length of all stitches.
     price_per_kg, price_per_hour : of yarn and of the machine, in any one currency.
     tex_of_carriers : linear densities of carriers with another yarn, g/km.
+    looser : loops of stitch numbers other than the piece's.
 
     Raises
     ------
@@ -165,7 +167,7 @@ def program_report(
         seconds / 60,
         yarns,
         _cost(yarns, seconds, price_per_kg, price_per_hour),
-        pass_tensions(program, yarn, machine),
+        pass_tensions(program, yarn, machine, looser),
         machine.source("times"),
         yarn.source,
     )
@@ -244,8 +246,8 @@ def _empty_passes(reading: ProgramReading, machine: MachineProfile) -> int:
     for step in reading.passes:
         rightwards = not at_right if step.rightwards is None else step.rightwards
         empty += rightwards == at_right
-        if step.tucks and step.knits and not machine.tuck_with_knit:
-            empty += 2  # back, and the same way again for the tucks
+        if not machine.tuck_with_knit:
+            empty += 2 * step.changes  # back, and the same way again
         at_right = rightwards
     return empty
 

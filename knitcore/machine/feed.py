@@ -50,7 +50,7 @@ class HookFeed:
         self, machine: MachineProfile, plan: CarrierPlan, needles: FirstCourse, number: float
     ) -> None:
         self._machine, self._plan, self._needles = machine, plan, needles
-        self._stitch_number = number
+        self._stitch_number = self._row_number = number
 
     def start(self) -> Iterator[str]:
         """The lines before the cast-on."""
@@ -86,6 +86,13 @@ class HookFeed:
     def waste_settings(self) -> Iterator[str]:
         """Extension operations that set the machine for waste yarn after the piece."""
         yield from self._settings("waste")
+
+    def stitch_number(self, number: float | None) -> Iterator[str]:
+        """Set the stitch number of a row; None for the piece's own."""
+        number = self._stitch_number if number is None else number
+        if number != self._row_number:
+            self._row_number = number
+            yield f"x-stitch-number {_digit(number, self._machine.dialect)}"
 
     def finish(self, *, after_waste: bool) -> Iterator[str]:
         """Take out the yarns that are still in."""

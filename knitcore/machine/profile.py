@@ -203,12 +203,38 @@ class MachineProfile:
 
     def __post_init__(self) -> None:
         numbers, park = self.stitch_number, self.carriers
-        if not numbers.least <= numbers.default <= numbers.most:
+        for name in ("default", "waste", "transfer"):
+            number = getattr(numbers, name)
+            if number is not None and not numbers.least <= number <= numbers.most:
+                raise InputError(
+                    f"stitch_number.{name}",
+                    f"{number:g} is outside {numbers.least:g} to {numbers.most:g}.",
+                    "Give least ≤ number ≤ most.",
+                )
+            if numbers.whole and number is not None and number % 1:
+                raise InputError(
+                    f"stitch_number.{name}",
+                    f"{number:g} is no whole number, and the machine has no others.",
+                    'Give a whole number, or "whole": false.',
+                )
+        if 0 < self.racking.most_needles < self.racking.step_needles:
             raise InputError(
-                "stitch_number",
-                f"the default {numbers.default:g} is outside {numbers.least:g} to "
-                f"{numbers.most:g}.",
-                "Give least ≤ default ≤ most.",
+                "racking.step_needles",
+                f"a step of {self.racking.step_needles:g} needles is beyond the limit of "
+                f"{self.racking.most_needles:g}.",
+                "Give a step of at most most_needles.",
+            )
+        if park.hooks and self.dialect is Dialect.KNITERATE:
+            raise InputError(
+                "carriers.hooks",
+                "the dialect kniterate brings yarn in without a hook.",
+                'Give "hooks": false, or the dialect knitout.',
+            )
+        if self.reads_programs and not park.hooks and self.beds == 1:
+            raise InputError(
+                "beds",
+                "without a hook, programs begin with waste yarn on two beds.",
+                'Give 2 beds, "hooks": true, or the dialect hand.',
             )
         for name in ("waste", "draw"):
             carrier = getattr(park, name)

@@ -16,9 +16,10 @@ Specification: https://textiles-lab.github.io/knitout/knitout.html
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 
 import numpy as np
 
@@ -26,8 +27,10 @@ from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.garment.piece import Piece
 from knitcore.machine.carriers import CarrierPlan, plan_carriers
+from knitcore.machine.feed import TUBE_PASSES
 from knitcore.machine.profile import DEFAULT, Dialect, MachineProfile, profile, profiles
-from knitcore.machine.program_body import ProgramBody
+from knitcore.machine.program_body import WASTE_COURSES, ProgramBody
+from knitcore.machine.program_passes import read_passes
 from knitcore.machine.tension import (
     BREAK_RISK,
     LoopYarn,
@@ -37,6 +40,8 @@ from knitcore.machine.tension import (
     tightest_of,
 )
 
+MOST_LISTED = 6
+"""Courses that a sentence names."""
 _COURSE = re.compile(r"; course (\d+)")
 _NEEDLE = re.compile(r"([fb]s?)(-?\d+)")
 
@@ -62,6 +67,8 @@ class KnitoutProgram:
     stitch_number : of the piece.
     draws_waste : true if waste yarn takes the place of the draw thread.
     spared : what was done so that transfers do not break the yarn, in a sentence; or empty.
+    tuck_passes : further passes where tucks and knits share a bed and a pass cannot hold both.
+    steps : what the user does at the machine before and after, a sentence each.
     """
 
     text: str
@@ -72,10 +79,18 @@ class KnitoutProgram:
     stitch_number: float | None = None
     draws_waste: bool = False
     spared: str = ""
+    tuck_passes: int = 0
+    steps: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the machine does otherwise than a reader of the chart expects, in sentences."""
+        tucks = f"Tucks beside knits take {self.tuck_passes} passes more: a bed does one of both."
+        return (*([self.spared] if self.spared else []), *([tucks] if self.tuck_passes else []))
 
 
 BodyOf = Callable[
-    [Piece, CarrierPlan, MachineProfile, float, LoopYarn | None, frozenset[int]], ProgramBody
+    [Piece, CarrierPlan, MachineProfile, float, LoopYarn | None, Mapping[int, float]], ProgramBody
 ]
 """Makes the passes of a program."""
 
@@ -88,6 +103,7 @@ def knitout_program(
     stitch_number: float | None = None,
     yarn: LoopYarn | None = None,
     body_of: BodyOf = ProgramBody,
+    looser: Mapping[float, LoopYarn] | None = None,
 ) -> KnitoutProgram:
     """The program of a chart; :func:`knitcore.formats.read.knitout_reader.verified` checks it.
 
@@ -100,6 +116,8 @@ def knitout_program(
     yarn : of the piece: transfers that would break it are staged, slowed or refused; None does not
         look at it.
     body_of : makes the passes of the piece, which is mirrored if :func:`is_mirrored` says so.
+    looser : larger stitch numbers and their loops, for rows before transfers that would strain the
+        yarn; None brings all loops to the front instead, before a bed is racked.
 
     Raises
     ------
@@ -117,12 +135,14 @@ def knitout_program(
     number = _checked_number(machine, stitch_number)
     piece = Piece.of(chart)
     _check_machine(piece, machine)
-    lines, spared = _knitted(piece, machine, number, finish, yarn, body_of)
+    make = partial(_lines, piece, machine, number, finish, yarn, body_of)
+    lines, spared = _knitted(make, machine, yarn, looser)
     stitch = piece.shaped.stitch
     changed = (piece.chart.purl[1:] ^ piece.chart.purl[:-1]) & stitch[1:] & stitch[:-1]
     crossings = int(np.count_nonzero(changed))
     park = machine.carriers
     plan = plan_carriers(piece, park)
+    changes = sum(step.changes for step in read_passes("\n".join(lines)).passes)
     begin = lines.index("; cast-on")
     end = lines.index("; waste yarn" if finish is Finish.WASTE else "; bind-off")
     return KnitoutProgram(
@@ -134,29 +154,74 @@ def knitout_program(
         number,
         plan.draw == plan.waste,
         spared,
+        0 if machine.tuck_with_knit else 2 * changes,
+        tuple(_steps(piece, plan, machine, finish, lines)),
     )
 
 
+def _steps(
+    piece: Piece, plan: CarrierPlan, machine: MachineProfile, finish: Finish, lines: Sequence[str]
+) -> Iterator[str]:
+    """What the user does at the machine before and after, a sentence each."""
+    used = {line.rsplit(" ", 1)[-1] for line in lines if line.startswith(("knit", "tuck"))}
+    yarns = {k: f"{piece.yarns[y].name} ({piece.yarns[y].colour})" for k, y in plan.yarns.items()}
+    has_draw = not machine.carriers.hooks and plan.draw not in (None, plan.waste)
+    if has_draw and plan.draw is not None:
+        yarns[plan.draw] = "a smooth, strong draw thread"
+    if str(plan.waste) in used:
+        yarns[plan.waste] = "waste yarn"
+    threaded = "; ".join(f"{carrier} {yarn}" for carrier, yarn in sorted(yarns.items()))
+    yield f"Before: thread carrier {threaded}."
+    settings = (
+        ("stitch number", machine.stitch_number),
+        ("speed", machine.speed),
+        ("roller advance", machine.roller_advance),
+    )
+    of_waste = [f"{name} {of.waste:g}" for name, of in settings if of and of.waste is not None]
+    set_so = f", with {', '.join(of_waste)}" if of_waste else ""
+    if not machine.carriers.hooks:
+        yield f"It begins with {machine.waste_passes + TUBE_PASSES} passes of waste yarn{set_so}."
+        off = "pull out the draw thread" if has_draw else "cut the last course of waste yarn"
+        yield f"After: {off}, and the waste comes off the cast-on."
+    if finish is Finish.WASTE:
+        yield (
+            f"The last row hangs on {WASTE_COURSES} courses of waste yarn: bind it off or graft "
+            "it by hand, then unravel them."
+        )
+    else:
+        yield "The last row is bound off: draw the end of the yarn through the last stitch."
+
+
 def _knitted(
-    piece: Piece,
+    make: Callable[[Mapping[int, float]], list[str]],
     machine: MachineProfile,
-    number: float,
-    finish: Finish,
     yarn: LoopYarn | None,
-    body_of: BodyOf,
+    looser: Mapping[float, LoopYarn] | None,
 ) -> tuple[list[str], str]:
     """The lines of a program that the yarn stands, and what was done for it."""
-    lines = _lines(piece, machine, number, finish, yarn, body_of)
+    lines = make({})
     if yarn is None:
         return lines, ""
     risky = _risky(lines, yarn, machine)
-    staged = frozenset(_course(lines, step.line) - 1 for step in risky if step.rack)
+    courses = {_course(lines, step.line) - 1 for step in risky if step.rack}
     spared = ""
-    if staged:
-        lines = _lines(piece, machine, number, finish, yarn, body_of, staged)
-        rows = f"{len(staged)} {'course' if len(staged) == 1 else 'courses'}"
+    if courses and looser is None:
+        lines = make(dict.fromkeys(courses, 0.0))
+        rows = f"{len(courses)} {'course' if len(courses) == 1 else 'courses'}"
         spared = f"Before {rows}, all loops come to the front so that racking spares the yarn."
         risky = _risky(lines, yarn, machine)
+    elif rows_before := sorted(courses - {0}):
+        for number in sorted(looser or ()):
+            loosened = make(dict.fromkeys(rows_before, number))
+            left = _risky(loosened, yarn, machine, looser)
+            if len(left) < len(risky):
+                lines, risky = loosened, left
+                spared = (
+                    f"Stitch number {number:g} in {_listed(rows_before)} gives the loops the yarn "
+                    "for the transfers after it."
+                )
+            if not left:
+                break
     worst = tightest_of(risky)
     if worst is None:
         return lines, spared
@@ -175,10 +240,22 @@ def _knitted(
     return lines, f"{spared} {slowed}".strip()
 
 
-def _risky(lines: Sequence[str], yarn: LoopYarn, machine: MachineProfile) -> list[PassTension]:
+def _listed(courses: Sequence[int]) -> str:
+    """Courses by their numbers, from 1; the first few of many."""
+    names = [str(course) for course in courses[:MOST_LISTED]]
+    more = f" and {len(courses) - MOST_LISTED} more" if len(courses) > MOST_LISTED else ""
+    return f"{'course' if len(courses) == 1 else 'courses'} {', '.join(names)}{more}"
+
+
+def _risky(
+    lines: Sequence[str],
+    yarn: LoopYarn,
+    machine: MachineProfile,
+    looser: Mapping[float, LoopYarn] | None = None,
+) -> list[PassTension]:
     return [
         step
-        for step in pass_tensions("\n".join(lines), yarn, machine)
+        for step in pass_tensions("\n".join(lines), yarn, machine, looser)
         if step.tightest is not None and step.tightest.break_chance >= BREAK_RISK
     ]
 
@@ -211,7 +288,7 @@ def _lines(
     finish: Finish,
     yarn: LoopYarn | None,
     body_of: BodyOf,
-    staged: frozenset[int] = frozenset(),
+    staged: Mapping[int, float],
 ) -> list[str]:
     """All lines of a program.
 

@@ -1,8 +1,9 @@
 """The passes of a program between its headers and its end, with the bed of each loop."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class ProgramBody:
     number : of the piece's stitches.
     yarn : transfers are planned so that it stands them; None does not look at it.
     staged : courses, from 0, before which all loops come to the front, so that no racking pulls
-        those of the back.
+        those of the back; with a stitch number, for bodies that knit the row before looser.
     """
 
     def __init__(
@@ -44,7 +45,7 @@ class ProgramBody:
         machine: MachineProfile,
         number: float,
         yarn: LoopYarn | None = None,
-        staged: frozenset[int] = frozenset(),
+        staged: Mapping[int, float] = MappingProxyType({}),
     ) -> None:
         self._piece, self._plan, self._machine = piece, plan, machine
         self._yarn, self._staged = yarn, staged

@@ -11,6 +11,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from knitcore.machine.profile import Dialect, MachineProfile
+from knitcore.machine.program_passes import stitch_number_of
 
 _MAGIC = re.compile(r";!knitout-\d+")
 _NEEDLE = re.compile(r"([fb])s?(-?\d{1,6})")
@@ -172,11 +173,8 @@ class _Check:
         numbers = self._machine.stitch_number
         if operation not in ("x-stitch-number", "x-xfer-stitch-number") or not words:
             return
-        try:
-            number = float(int(words[0], 36) if words[0].isalpha() else float(words[0]))
-        except ValueError:
-            number = math.nan
-        if not numbers.least <= number <= numbers.most:
+        number = stitch_number_of(words[0])
+        if number is None or not numbers.least <= number <= numbers.most:
             self.add(
                 "settings",
                 f"there is no stitch number {words[0][:20]}.",
@@ -321,8 +319,7 @@ class _Check:
         place = self._needle(words[1])
         if place is None:
             return
-        if operation != "miss":
-            self._came_from.pop(words[1], None)
+        self._came_from.pop(words[1], None)
         if operation == "split":
             self._split(words[1], words[2])
         elif operation != "miss":
@@ -419,7 +416,8 @@ class _Check:
             )
 
     def _transfer(self, here: str, there: str) -> None:
-        self._pile(there, self._loops.pop(here, 0), keeps=True)
+        moved = self._loops.pop(here, 0)
+        self._pile(there, moved, keeps=True)
         if self._rack % 1:
             self.add(
                 "racking",
@@ -427,7 +425,7 @@ class _Check:
                 "Rack by whole needles before transfers.",
             )
         origin = self._came_from.pop(here, here)
-        if origin == there:
+        if origin == there and self._loops[there] == moved:
             self.add(
                 "transfers",
                 "a loop is moved away and back before it is knitted.",

@@ -73,6 +73,14 @@ def _outwards(links: Sequence[Link | None]) -> tuple[Link, ...]:
     return tuple(held)
 
 
+def stitch_number_of(word: str) -> float | None:
+    """A stitch number as a program writes it, with letters from 10 on; None if it is none."""
+    try:
+        return float(int(word, 36)) if word.isalpha() else float(word)
+    except ValueError:
+        return None
+
+
 @dataclass
 class ProgramPass:
     """One pass of the carriage.
@@ -87,7 +95,8 @@ class ProgramPass:
     carriers : that it moves.
     loops : made, moved or dropped.
     low, high : the needles it works on, from left to right.
-    tucks, knits : loops of either kind.
+    changes : how often one bed goes over from tucks to knits, or back.
+    number : stitch number of the loops that it moves, of a transfer; None if none is set.
     pulls : on the loops that needles hold.
     """
 
@@ -100,8 +109,8 @@ class ProgramPass:
     loops: int = 0
     low: float = 0.0
     high: float = 0.0
-    tucks: int = 0
-    knits: int = 0
+    changes: int = 0
+    number: float | None = None
     pulls: frozenset[PulledLink] = frozenset()
 
 
@@ -153,6 +162,9 @@ class _Reader:
         self.reading = ProgramReading()
         self._rack = 0.0
         self._line = 0
+        self._kinds: dict[str, str] = {}
+        self._number: float | None = None
+        self._knitted: float | None = None
         self._held: dict[Needle, list[int]] = {}
         self._place: list[Needle | None] = []
         self._strand: dict[tuple[str, ...], list[int]] = {}
@@ -167,6 +179,8 @@ class _Reader:
             self._racked(given)
         elif operation == "xfer":
             self._transfer(*map(self._needle, given[:2]))
+        elif operation == "x-stitch-number" and given:
+            self._number = stitch_number_of(given[0])
         elif operation in _KNITS:
             self._knit(operation, given)
         elif operation in ("out", "outhook"):
@@ -209,6 +223,7 @@ class _Reader:
         if last is None or (last.kind, last.bed, last.rack) != ("transfer", here.bed, self._rack):
             self.close()
             last = ProgramPass("transfer", self._line, self._rack, None, here.bed)
+            last.number = self._knitted
             last.pulls = self._pulls()
             self.reading.passes.append(last)
         self._moved = True
@@ -238,6 +253,7 @@ class _Reader:
             last = ProgramPass(kind, self._line, self._rack, rightwards)
             last.carriers = tuple(carriers)
             self.reading.passes.append(last)
+            self._kinds = {}
         if operation == "miss":
             return
         self._count(last, here)
@@ -245,8 +261,9 @@ class _Reader:
             for loop in self._held.pop(here, []):
                 self._place[loop] = None
         if carriers:
-            last.tucks += operation == "tuck"
-            last.knits += operation != "tuck"
+            last.changes += self._kinds.get(here.bed, operation) != operation
+            self._kinds[here.bed] = operation
+            self._knitted = self._number
             self._make(here, tuple(carriers))
 
     def _make(self, here: Needle, carriers: tuple[str, ...]) -> None:

@@ -1,7 +1,9 @@
 """The stitch number of a piece on a machine, and the yarn of its loops there."""
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from itertools import count, takewhile
 
 from knitcore.base.errors import InputError
 from knitcore.garment.piece import Piece
@@ -12,6 +14,8 @@ from knitcore.machine.tension import LoopYarn
 from knitcore.materials import Laws, Material
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
 
+MOST_LOOSER = 1.3
+"""Loops of a loosened row over those of the others: beyond, the row shows as a gap."""
 _MARK = re.compile(r"\.[0-9a-f]{6}$")
 
 
@@ -24,11 +28,13 @@ class MachineSetting:
     number : the stitch number.
     yarn : of the loops that it gives; None if the material does not say enough.
     note : what the number is based on, in a sentence.
+    looser : larger stitch numbers with the yarn of their loops, for rows before transfers.
     """
 
     number: float
     yarn: LoopYarn | None
     note: str
+    looser: Mapping[float, LoopYarn] = field(default_factory=dict)
 
 
 def yarn_identifier(material: Material) -> str:
@@ -76,7 +82,21 @@ swatches, or change it.
             number, note = setting.number, _words(setting, loops_mm)
     if dial is not None and number in dial and (loops_mm is not None or stitch_number is not None):
         loops_mm = dial.loop_length_mm(number)[0]
-    return MachineSetting(number, _yarn(material, loops_mm, linear_density_tex), note)
+    yarn = _yarn(material, loops_mm, linear_density_tex)
+    return MachineSetting(number, yarn, note, _looser(dial, number, yarn))
+
+
+def _looser(dial: Dial | None, number: float, yarn: LoopYarn | None) -> dict[float, LoopYarn]:
+    """Whole steps of the dial above a number, with their loops, as far as a row may differ."""
+    if dial is None or yarn is None:
+        return {}
+    steps = (number + step for step in count(1.0))
+    loops = (
+        (loose, replace(yarn, loop_length_mm=dial.loop_length_mm(loose)[0]))
+        for loose in takewhile(lambda loose: loose in dial, steps)
+    )
+    most = MOST_LOOSER * yarn.loop_length_mm
+    return dict(takewhile(lambda of: of[1].loop_length_mm <= most, loops))
 
 
 def _words(setting: DialSetting, loops_mm: float) -> str:

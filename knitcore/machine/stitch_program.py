@@ -8,9 +8,10 @@ on the front bed and in front of them on the back bed. In a cable, the loops tha
 on the front bed while the bed is racked.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -23,9 +24,10 @@ from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.garment.piece import Piece
 from knitcore.machine.carriers import CarrierPlan
 from knitcore.machine.feed import is_leftwards
-from knitcore.machine.profile import MachineProfile
+from knitcore.machine.profile import DEFAULT, MachineProfile, profile
 from knitcore.machine.program import Finish, KnitoutProgram, is_mirrored, knitout_program
 from knitcore.machine.program_body import MAX_LOOPS, ProgramBody
+from knitcore.machine.program_check import MOST_LOOPS
 from knitcore.machine.tension import LoopYarn
 from knitcore.machine.transfers import LoopMove, Needle, TransferPass, TransferPlan, plan_transfers
 
@@ -35,30 +37,49 @@ MOST_SPARE = 3
 """Needles that the yarn at most lets two neighbours be apart."""
 
 
-def bed_map(graph: StitchGraph) -> Mask:
+def bed_map(graph: StitchGraph, *, tuck_with_knit: bool = True) -> Mask:
     """For each site, whether it works on the back bed.
 
     It does for a purl, and where the yarn lies in front of a held loop; and every second one of
-    neighbouring yarn overs does, so that each is a loop.
+    neighbouring yarn overs does, so that each is a loop. Where a bed cannot tuck in the pass in
+    which it knits, the yarn overs of a row work on the bed that knits less of it.
     """
     back = np.where(graph.act == YarnAct.MISS, graph.front, graph.purl)
     is_over = (graph.act == YarnAct.OVER) & (np.diff(graph.first, axis=1) == 0)
+    if not tuck_with_knit:
+        knits = graph.act == YarnAct.THROUGH
+        fewer = 2 * (back & knits).sum(axis=1) <= knits.sum(axis=1)
+        back = np.where(is_over, fewer[:, None], back)
     for row, column in np.argwhere(is_over[:, :-1] & is_over[:, 1:]):
         back[row, column + 1] = not back[row, column]
     return np.asarray(back, dtype=bool)
 
 
+def check_first_row(row: int) -> None:
+    """Refuse to begin above row 1, which only charts of knits and purls can.
+
+    Raises
+    ------
+    InputError
+    """
+    if row > 1:
+        problem = "a program with lace, cables, tucks or slips begins at row 1."
+        raise InputError("from_row", problem, "Give the rows that are left as a chart.")
+
+
 def stitch_program(
-    chart: SymbolChart,
+    chart: Piece | SymbolChart,
     *,
     finish: Finish = Finish.WASTE,
     machine: MachineProfile | None = None,
     stitch_number: float | None = None,
     yarn: LoopYarn | None = None,
+    looser: Mapping[float, LoopYarn] = MappingProxyType({}),
 ) -> KnitoutProgram:
-    """The program of a chart of any stitches.
+    """The program of a piece, or of a chart of any stitches.
 
-    Parameters are those of :func:`knitcore.machine.program.knitout_program`.
+    Parameters are those of :func:`knitcore.machine.program.knitout_program`; ``looser`` is for
+    other stitches than knits and purls.
 
     Raises
     ------
@@ -71,18 +92,24 @@ def stitch_program(
     >>> stitch_program(SymbolChart.parse("O/KK;KKKK")).transfers
     4
     """
+    if isinstance(chart, Piece):
+        return knitout_program(
+            chart, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
+        )
     graph = chart.graph
     for row, column in np.argwhere(graph.turn != 0):
         problem = f"row {row + 1}, stitch {column + 1} is twisted, which no machine does."
         raise InputError("chart", problem, "Knit or purl it plainly, or knit the piece by hand.")
     knitted = chart.mirror().graph if machine and is_mirrored(machine) else graph
+    beds = bed_map(graph, tuck_with_knit=(machine or profile(DEFAULT)).tuck_with_knit)
     made = knitout_program(
-        Piece.plain(StitchChart(bed_map(graph))),
+        Piece.plain(StitchChart(beds)),
         finish=finish,
         machine=machine,
         stitch_number=stitch_number,
         yarn=yarn,
         body_of=lambda *given: _StitchBody(knitted, *given),
+        looser=looser,
     )
     return replace(made, transfers=made.transfers + made.shaping_transfers, shaping_transfers=0)
 
@@ -110,7 +137,7 @@ class _StitchBody(ProgramBody):
         machine: MachineProfile,
         number: float,
         yarn: LoopYarn | None,
-        staged: frozenset[int],
+        staged: Mapping[int, float],
     ) -> None:
         self._most_rack = min(
             int(machine.racking.most_needles / machine.needles_per_column), MOST_SHIFT
@@ -134,7 +161,9 @@ class _StitchBody(ProgramBody):
             yield f"; course {row + 1}"
             yield from self._place(row)
             ((_, carrier),) = carriers.runs
+            yield from self._feed.stitch_number(self._staged.get(row + 1))
             yield from self._worked(row, carrier)
+        yield from self._feed.stitch_number(None)
 
     def _worked(self, row: int, carrier: int) -> Iterator[str]:
         """The lines of what the carriage does at each needle."""
@@ -241,6 +270,7 @@ class _StitchBody(ProgramBody):
         if rack:
             yield "rack 0"
         for group in groups:
+            self._check_hooks(row, group)
             held = {column: self._held.pop(column) for column in group}
             for column in group:
                 self._back.pop(column)
@@ -249,6 +279,18 @@ class _StitchBody(ProgramBody):
                 if len(sources):
                     self._held[column] = sum(held[int(source)] for source in sources)
                     self._back[column] = bool(self._piece.chart.purl[row, column])
+
+    def _check_hooks(self, row: int, group: range) -> None:
+        """Refuse stitches through more loops than a hook holds."""
+        for column in group:
+            loops = sum(self._held[int(source)] for source in self._graph.sources(row, column))
+            if loops > MOST_LOOPS:
+                raise InputError(
+                    "chart",
+                    f"row {row + 1}, stitch {column + 1} is worked through {loops} loops; a hook "
+                    f"holds {MOST_LOOPS}.",
+                    "Begin with a row of knits." if row == 0 else "Decrease after a plain row.",
+                )
 
 
 def _numbers(passes: Sequence[TransferPass]) -> list[int]:

@@ -23,7 +23,7 @@ machine's profile may give gap and take-down, and :class:`LoopYarn` the yarn's s
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import lru_cache
@@ -383,15 +383,24 @@ class PassTension:
         return {**figures, "tightest": tightest}
 
 
-def pass_tensions(program: str, yarn: LoopYarn, machine: MachineProfile) -> tuple[PassTension, ...]:
-    """The passes of a program that transfer, each with its tightest loop."""
+def pass_tensions(
+    program: str,
+    yarn: LoopYarn,
+    machine: MachineProfile,
+    looser: Mapping[float, LoopYarn] | None = None,
+) -> tuple[PassTension, ...]:
+    """The passes of a program that transfer, each with its tightest loop.
+
+    ``looser`` has the yarn of loops that another stitch number than the piece's made.
+    """
+    others = looser or {}
     return tuple(
         PassTension(
             number,
             step.line,
             step.rack,
             step.loops,
-            _tightest(step.pulls, yarn, machine),
+            _tightest(step.pulls, others.get(step.number or 0.0, yarn), machine),
             step.pulls,
         )
         for number, step in enumerate(read_passes(program).passes, 1)

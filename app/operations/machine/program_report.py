@@ -6,20 +6,24 @@ from typing import Annotated
 from pydantic import Field
 
 from knitcore.base.errors import InputError
-from knitcore.chart.stitch_chart import check_stitches
+from knitcore.chart.stitch_chart import StitchChart, check_stitches
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.formats.designs.design_file import check_bare
 from knitcore.formats.designs.layout import DesignLayout, piece_of
+from knitcore.garment.piece import Piece
 from knitcore.machine.duration import CarrierYarn, hand_report, program_report
 from knitcore.machine.home.hand_plan import hand_plan
 from knitcore.machine.home.plan_rows import minutes_in_words
 from knitcore.machine.profile import machine_of
-from knitcore.machine.program import Finish, knitout_program
+from knitcore.machine.program import Finish
 from knitcore.machine.setting import setting_of
+from knitcore.machine.stitch_program import check_first_row, stitch_program
 from knitcore.machine.tension import Verdict
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
 
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
-from ...requests.charts import ChartInput, MaterialName, to_chart
+from ...requests.charts import AnyChartInput, MaterialName, to_stitches
 from ...requests.fabrics import Gauged, LawsRequest
 from ..files.machines import machine_text
 from ..registry import Command, Operation
@@ -32,7 +36,7 @@ Price = Annotated[float, Field(gt=0, le=1e6)]
 class ProgramReportRequest(DesignLayout, Gauged, LawsRequest):
     """A chart, its yarn, and the machine that knits it."""
 
-    chart: ChartInput
+    chart: AnyChartInput
     material: MaterialName = Field("acrylic", description="Material of the yarn.")
     finish: Finish = Field(Finish.WASTE, description="The end of the program.")
     stitch_number: float | None = Field(
@@ -104,11 +108,11 @@ def program(request: ProgramReportRequest, context: Context) -> ProgramReportRes
     InputError
         If the machine cannot knit the chart, or its transfers would break the yarn.
     """
-    chart = to_chart(request.chart)
-    check_stitches(chart.stitches, MAX_STITCHES, instead=" for a program")
+    chart = to_stitches(request.chart)
+    check_stitches(chart.rows * chart.columns, MAX_STITCHES, instead=" for a program")
     material, machine = context.material(request.material), machine_of(request.machine)
-    piece = replace(piece_of(chart, request), gauge=request.relaxed_size)
-    piece = piece.from_row(request.from_row)
+    others = chart if isinstance(chart, SymbolChart) else None
+    piece = _piece(chart, request)
     mm = request.loop_length_mm
     setting = setting_of(
         piece,
@@ -127,15 +131,22 @@ def program(request: ProgramReportRequest, context: Context) -> ProgramReportRes
     prices = request.price_per_kg, request.price_per_hour
     notes = [setting.note]
     if machine.reads_programs:
-        knitted = knitout_program(
-            piece,
+        knitted = stitch_program(
+            piece if others is None else others,
             finish=request.finish,
             machine=machine,
             stitch_number=setting.number,
             yarn=setting.yarn,
+            looser=setting.looser,
         )
-        report = program_report(knitted.text, machine, setting.yarn, *prices)
-        notes += [knitted.spared] if knitted.spared else []
+        report = program_report(knitted.text, machine, setting.yarn, *prices, looser=setting.looser)
+        notes += knitted.notes
+    elif others is not None:
+        raise InputError(
+            "chart",
+            f"{machine.name} is worked by hand, from plans that hold knits and purls only.",
+            "Give a chart of K and P, or choose a machine that reads programs.",
+        )
     else:
         report = hand_report(hand_plan(piece, machine), piece, machine, setting.yarn, *prices)
     return ProgramReportResult.of(
@@ -144,6 +155,16 @@ def program(request: ProgramReportRequest, context: Context) -> ProgramReportRes
         interval_source=f"Tension: {report.tension_source}.",
         notes=[*notes, report.time_note],
     )
+
+
+def _piece(chart: StitchChart | SymbolChart, request: ProgramReportRequest) -> Piece:
+    """The piece of a request: that of the purl map of other stitches."""
+    if isinstance(chart, SymbolChart):
+        check_bare(request)
+        check_first_row(request.from_row)
+        return replace(Piece.plain(chart.plain), gauge=request.relaxed_size)
+    piece = replace(piece_of(chart, request), gauge=request.relaxed_size)
+    return piece.from_row(request.from_row)
 
 
 def _command(request: ProgramReportRequest, context: Context) -> ProgramReportResult:
@@ -173,9 +194,11 @@ def _lines(result: ProgramReportResult) -> list[str]:
             low, high = (float(f"{end:.2g}") for end in of.tension_interval_n)
             tightest = (
                 f"tightest loop {of.verdict}: {of.tension_n:.2g} N ({low:g} to {high:g}) over "
-                f"{of.needles:g} needles, breaks with a chance of {of.break_chance:.0%}"
+                f"{of.needles:g} {'needle' if of.needles == 1 else 'needles'}, "
+                f"breaks with a chance of {of.break_chance:.0%}"
             )
-        lines.append(f"rack {kind.rack:g}: {kind.passes} passes from line {kind.line}, {tightest}")
+        passes = "1 pass" if kind.passes == 1 else f"{kind.passes} passes"
+        lines.append(f"rack {kind.rack:g}: {passes} from line {kind.line}, {tightest}")
     return lines
 
 

@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import cycle
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 from knitcore.machine.knitout_machine import Loop, knitting_of, states_of
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile
-from knitcore.machine.program import Finish, KnitoutProgram, knitout_program
+from knitcore.machine.program import Finish, KnitoutProgram
 from knitcore.machine.program_check import check_program
 from knitcore.machine.stitch_program import stitch_program
 from knitcore.machine.tension import LoopYarn
@@ -158,10 +159,11 @@ def verified(
     machine: MachineProfile | None = None,
     stitch_number: float | None = None,
     yarn: LoopYarn | None = None,
+    looser: Mapping[float, LoopYarn] = MappingProxyType({}),
 ) -> KnitoutProgram:
     """The program of a piece, after the virtual machine has knitted exactly this piece from it.
 
-    Parameters are those of :func:`knitcore.machine.program.knitout_program`.
+    Parameters are those of :func:`knitcore.machine.stitch_program.stitch_program`.
 
     Raises
     ------
@@ -170,17 +172,12 @@ def verified(
     KnitoutMismatchError
         If the virtual machine refuses the program, warns, or knits something else.
     """
-    meant: Piece | SymbolChart
-    if isinstance(chart, SymbolChart) and not chart.is_plain:
-        meant = chart
-        made = stitch_program(
-            chart, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
-        )
-    else:
-        meant = Piece.of(chart).cropped()
-        made = knitout_program(
-            meant, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn
-        )
+    if not isinstance(chart, SymbolChart) or chart.is_plain:
+        chart = Piece.of(chart).cropped()
+    meant: Piece | SymbolChart = chart
+    made = stitch_program(
+        meant, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn, looser=looser
+    )
     try:
         loops, warned = _interpreted(made.text)
         knitted = knitted_stitches(made.text)

@@ -42,6 +42,7 @@ from knitcore.machine.home.punch_card import punch_card
 from knitcore.machine.profile import MachineProfile, machine_of
 from knitcore.machine.program import Finish
 from knitcore.machine.setting import MachineSetting, setting_of
+from knitcore.machine.stitch_program import check_first_row
 from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from knitcore.prediction.size import RelaxedSize
@@ -254,9 +255,7 @@ def _of_extension(kind: str) -> Exporter:
 def _knitout_of_stitches(
     chart: SymbolChart, material: Material, options: ExportOptions
 ) -> ExportedFile:
-    if options.from_row > 1:
-        problem = "a program with lace, cables, tucks or slips begins at row 1."
-        raise InputError("from_row", problem, "Give the rows that are left as a chart.")
+    check_first_row(options.from_row)
     return _knitout(chart, material, options)
 
 
@@ -273,11 +272,13 @@ def _knitout(
         machine=machine,
         stitch_number=setting.number,
         yarn=setting.yarn,
+        looser=setting.looser,
     )
     notes = [
         f"Made for {machine.name}. {setting.note}",
         "Knitted on a virtual V-bed machine: the face is this chart.",
-        *([program.spared] if program.spared else []),
+        *program.notes,
+        *program.steps,
     ]
     if options.from_row > 1:
         notes.append(

@@ -6,6 +6,7 @@ import pytest
 from knitcore import InputError
 from knitcore.machine.profile import DEFAULT, Dialect, MachineProfile, profile, profiles
 
+NUMBERS = {"least": 0, "most": 9, "default": 6}
 EACH = pytest.mark.parametrize("machine", profiles().values(), ids=list(profiles()))
 
 
@@ -56,7 +57,18 @@ def test_an_unknown_machine_is_refused_with_those_that_there_are() -> None:
         ({"carriers": {"count": 4, "waste": 5}}, r"^carriers.waste: there is no carrier 5"),
         ({"carriers": {"count": 0}}, r"carriers.count: Input should be"),
         ({"racking": {"most_needles": float("nan")}}, r"racking.most_needles: Input should be"),
-        ({"stitch_number": {"least": 1, "most": 2, "default": 3}}, "the default 3 is outside 1"),
+        ({"stitch_number": NUMBERS | {"default": 10}}, r"^stitch_number.default: 10 is outside 0"),
+        ({"stitch_number": NUMBERS | {"waste": 40}}, r"^stitch_number.waste: 40 is outside 0"),
+        (
+            {"stitch_number": NUMBERS | {"transfer": 2.5}},
+            r"stitch_number.transfer: 2.5 is no whole",
+        ),
+        (
+            {"racking": {"most_needles": 2, "step_needles": 5}},
+            r"^racking.step_needles: a step of 5",
+        ),
+        ({"carriers": {"count": 6, "hooks": True}}, r"^carriers.hooks: the dialect kniterate"),
+        ({"beds": 1}, "^beds: without a hook, programs begin with waste yarn on two beds"),
         ({"sources": {}}, "sources: Dictionary should have at least 1 item"),
         ({"identifier": "My machine"}, "identifier: String should match"),
         ({"version": 2}, "version: Input should be 1"),

@@ -57,6 +57,20 @@ def test_rib_that_is_transferred_to_and_fro_in_each_row(machine: MachineProfile)
 
 
 @each_machine
+@pytest.mark.parametrize(
+    "between",
+    [["xfer b2 f1"], ["miss + b1 1"]],  # a decrease, and yarn in front of a slipped stitch
+)
+def test_a_loop_that_makes_way_comes_back_for_a_reason(
+    machine: MachineProfile, between: list[str]
+) -> None:
+    lines = ["in 1", *on_front("+", range(1, 4)), *on_front("-", range(1, 4))]
+    lines += ["xfer f1 b1", "xfer f2 b2", *between, "xfer b1 f1", "knit + f1 1", "out 1"]
+    lines = [line.replace("xfer b2 f1", "rack -1\nxfer b2 f1\nrack 0") for line in lines]
+    assert check_program(program(machine, *lines), machine) == ()
+
+
+@each_machine
 def test_more_carriers_than_there_are(machine: MachineProfile) -> None:
     carrier = machine.carriers.count + 1
     text = program(machine, f"in {carrier}", *on_front("+", range(1, 4), carrier), f"out {carrier}")

@@ -50,6 +50,22 @@ def test_a_home_machine_has_minutes_and_yarn_too(client: TestClient, machine: st
     ) == (report)
 
 
+CABLES = "PKKKKPPKKKKP;P[2/2L]PP[2/2R]P;PKKKKPPKKKKP;PKKKKPPKKKKP"
+
+
+def test_cables_have_the_table_of_passes_and_what_was_done_for_the_yarn(client: TestClient) -> None:
+    request = {"chart": CABLES, "machine": "kniterate", "material": "glove-wool"}
+    report = post(client, "program-report", request)
+    assert "Stitch number 9 in course 2" in " ".join(report["notes"])
+    kinds = report["kinds_of_transfer"]
+    assert {kind["rack"] for kind in kinds} == {0, 2}
+    assert max(kind["tightest"]["break_chance"] for kind in kinds) < 0.02
+    assert run("program", CABLES, "--machine", "kniterate", "--material", "glove-wool") == report
+    words = refused("program", CABLES, "--machine", "brother")
+    assert "plans that hold knits and purls only" in words
+    assert "begins at row 1" in refused("program", CABLES, "--from-row", 2)
+
+
 def test_loops_too_short_for_their_transfers_are_refused_with_what_helps() -> None:
     lace = ["rib", "--size", "8x6", "--machine", "kniterate", "--material", "lace-cashmere"]
     words = refused("program", *lace, "--finish", "bind-off")

@@ -1,6 +1,7 @@
 """Programs of any stitches: knitted on the virtual machine, and read back with their order."""
 
 import contextlib
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -10,9 +11,14 @@ from knitcore.base.errors import InputError
 from knitcore.chart.stitch_kinds import STITCHES
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.read.knitout_reader import knitted_chart, knitted_stitches, verified
+from knitcore.garment.piece import Piece
 from knitcore.machine.profile import profile
 from knitcore.machine.program import Finish
+from knitcore.machine.program_check import check_program
+from knitcore.machine.setting import setting_of
 from knitcore.machine.stitch_program import stitch_program
+from knitcore.machine.tension import BREAK_RISK, pass_tensions, tightest_of
+from knitcore.materials import material
 from tests.knitcore.symbol_charts import EVERY, chart_with, symbol_charts
 
 WIDEST = 4
@@ -39,6 +45,44 @@ def test_programs_knit_their_charts(chart: SymbolChart) -> None:
         read = knitted_stitches(program.text).content
         assert isinstance(read, SymbolChart) or chart.is_plain
         assert read == chart if isinstance(read, SymbolChart) else read.chart == chart.plain
+
+
+@pytest.mark.parametrize("lace", ["KO/KKK\\OK;KKKKKKKKK", "PO)PPP(OP;PPPPPPPPP"])
+def test_yarn_overs_cost_no_pass_where_a_bed_cannot_tuck_and_knit(lace: str) -> None:
+    machine = replace(profile("kniterate"), waste_passes=4)
+    made = verified(SymbolChart.parse(lace), machine=machine)
+    assert made.tuck_passes == 0
+    assert check_program(made.text, machine) == ()
+
+
+def test_tucks_beside_knits_cost_passes_that_are_named() -> None:
+    made = verified(SymbolChart.parse("KTKT;KKKK"), machine=profile("kniterate"))
+    assert made.tuck_passes == 6
+    assert made.notes == ("Tucks beside knits take 6 passes more: a bed does one of both.",)
+
+
+CABLES = SymbolChart.parse("PKKKKPPKKKKP;P[2/2L]PP[2/2R]P;PKKKKPPKKKKP;PKKKKPPKKKKP")
+
+
+def test_the_row_before_a_tight_cable_is_knitted_looser() -> None:
+    machine = profile("kniterate")
+    setting = setting_of(Piece.plain(CABLES.plain), machine, material("glove-wool"))
+    number, yarn, looser = setting.number, setting.yarn, setting.looser
+    with pytest.raises(InputError, match="would break"):
+        stitch_program(CABLES, machine=machine, stitch_number=number, yarn=yarn)
+    made = verified(CABLES, machine=machine, stitch_number=number, yarn=yarn, looser=looser)
+    assert made.spared == (
+        "Stitch number 9 in course 2 gives the loops the yarn for the transfers after it."
+    )
+    course = made.text[made.text.index("; course 2") :]
+    settings = [line for line in course.splitlines() if line.startswith("x-stitch-number")]
+    assert settings[:2] == ["x-stitch-number 9", f"x-stitch-number {number:g}"]
+    assert yarn is not None
+    assert 9 in looser
+    tightest = tightest_of(pass_tensions(made.text, yarn, machine, looser))
+    assert tightest is not None
+    assert tightest.tightest is not None
+    assert tightest.tightest.break_chance < BREAK_RISK
 
 
 BY_HAND = """;!knitout-2
@@ -90,6 +134,7 @@ def test_programs_of_other_hands(moves: str, row: str, face: str) -> None:
     [
         ("BK", "swg091n2", "row 1, stitch 1 is twisted, which no machine does"),
         ("[3/3R];KKKKKK", "kniterate", "row 2, stitches 1 to 6: Kniterate"),
+        ("KKK;^OO", "kniterate", "row 1, stitch 1 is worked through 6 loops; a hook holds 4"),
         ("TK;TK;TK;KK", "swg091n2", "row 4, stitch 1 holds 4 loops; a hook holds 3"),
     ],
 )
