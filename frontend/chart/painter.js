@@ -66,6 +66,11 @@ export class Painter {
     studio.document.onTear((names) =>
       studio.tell(`Unlinked copies that are no longer whole: ${names.join(", ")}. Undo brings them back.`),
     );
+    studio.document.onCut((cut) =>
+      studio.tell(
+        `${cut === 1 ? "A cable was" : `${cut} cables were`} cut and became knits and purls. Undo brings back what was.`,
+      ),
+    );
     studio.document.onRefuse((names) =>
       studio.tell(`Locked: ${names.join(", ")}. Unlock it in the list of regions to paint there.`),
     );
@@ -137,8 +142,8 @@ export class Painter {
     this.#placed = copy ? null : placedAt(chart, selection.value);
     if (this.#placed) return true;
     this.#floating = copy
-      ? Floating.lift(chart.grid, selection.value, true)
-      : (studio.editing.floating ?? Floating.lift(chart.grid, selection.value, false));
+      ? Floating.lift(chart, selection.value, true)
+      : (studio.editing.floating ?? Floating.lift(chart, selection.value, false));
     chart.begin();
     return true;
   }
@@ -199,7 +204,9 @@ export class Painter {
     if (tool.mode === "move") {
       if (this.#placed) view.preview.value = shifted(this.#placed.box, gesture, grid);
       else if (this.#floating) {
-        chart.paint(Brush.of(grid.purl.length, this.#floating.moved(grid, this.#target())), true);
+        const target = this.#target();
+        const brush = Brush.of(grid.purl.length, this.#floating.moved(grid, target));
+        chart.paint(brush, true, this.#floating.put(grid, target));
       }
       return;
     }
@@ -209,8 +216,9 @@ export class Painter {
       studio.selection.value = combined(this.#before, spans, grid, this.#combination, symmetry);
       return;
     }
-    const origin = tool.origin?.(gesture) ?? CORNER;
-    chart.paint(inked(grid, spans, this.#ink, origin, symmetry), tool.mode === "shape");
+    const origin = tool.origin?.(gesture) ?? (this.#ink.isWide ? gesture.start : CORNER);
+    const [brush, put] = inked(grid, spans, this.#ink, origin, symmetry);
+    chart.paint(brush, tool.mode === "shape", put);
   }
 
   /** Where the lower left corner of what is in the hand is now. @returns {Cell} */
@@ -228,9 +236,9 @@ export class Painter {
     if (tool.value.mode === "place") this.#place();
     else if (this.#placed) this.#replace(this.#placed);
     else if (this.#floating) {
-      const { clip, under } = this.#floating;
+      const { clip, under, others } = this.#floating;
       const target = this.#target();
-      if (chart.commit(tool.value.label)) studio.editing.hold(new Floating(clip, target, under));
+      if (chart.commit(tool.value.label)) studio.editing.hold(new Floating(clip, target, under, others));
     } else chart.commit(studio.ink.value.target === "stitches" ? tool.value.label : studio.ink.value.name);
     this.#floating = null;
     this.#gesture = null;

@@ -13,6 +13,7 @@
  */
 
 import { MAX_SIDE, isChartText } from "../grid/grid.js";
+import { faultOf } from "./others.js";
 
 export const FORMAT = "knitcore-design";
 export const MAX_ITEMS = 200;
@@ -31,7 +32,7 @@ export class DesignError extends Error {
 
 /** @param {string} chart @param {Partial<Content>} [more] @returns {Content} */
 export function contentOf(chart, more = {}) {
-  return { chart, outline: null, regions: [], repeats: [], shelf: [], ...more };
+  return { chart, other_stitches: [], outline: null, regions: [], repeats: [], shelf: [], ...more };
 }
 
 /** A document from the content of a file. @param {unknown} value @returns {DesignDocument} @throws {DesignError} */
@@ -74,6 +75,7 @@ export function readContent(value) {
   if (!isChartText(chart)) throw new DesignError("Its chart is not rows of K and P of one length.");
   return {
     chart,
+    other_stitches: readOthers(value.other_stitches, rows, columns),
     outline: readOutline(value.outline ?? null, rows, columns),
     regions: items(value.regions, "regions").map((item) => readRegion(item, rows, columns)),
     repeats: items(value.repeats, "repeats").map((item) => readRepeat(item, rows, columns)),
@@ -102,11 +104,20 @@ export function salvageContent(value) {
   };
   const bare = read({ chart: value.chart });
   if (!bare) return null;
-  for (const field of /** @type {const} */ (["outline", "regions", "repeats", "shelf"])) {
+  for (const field of /** @type {const} */ (["other_stitches", "outline", "regions", "repeats", "shelf"])) {
     const readable = read({ chart: value.chart, [field]: value[field] });
     if (readable) Object.assign(bare, { [field]: readable[field] });
   }
   return bare;
+}
+
+/** @param {unknown} value @param {number} rows @param {number} columns @returns {Content["other_stitches"]} */
+function readOthers(value, rows, columns) {
+  const runs = value ?? [];
+  if (!Array.isArray(runs) || !runs.every(isObject)) throw new DesignError("Its other stitches are not a list.");
+  const fault = faultOf(runs, rows, columns);
+  if (fault) throw new DesignError(fault, "Use stitches of the list, each inside the chart and in a place of its own.");
+  return runs.map(({ row, column, codes }) => ({ row: Number(row), column: Number(column), codes: String(codes) }));
 }
 
 /** @param {unknown} value @param {number} rows @param {number} columns */

@@ -20,6 +20,7 @@
 
 import { Grid } from "../grid/grid.js";
 import { PURL } from "../design/ink.js";
+import { entriesOf } from "../design/others.js";
 import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../design/store.js";
 import { Editing } from "./editing.js";
@@ -148,7 +149,9 @@ export class Studio {
     const label = "Changes from elsewhere";
     /** @param {Partial<DesignDocument>} part */
     const rest = ({ outline, regions, repeats, shelf }) => JSON.stringify([outline, regions, repeats, shelf]);
-    if (rest(content) === rest(design)) this.document.replace(Grid.fromText(design.chart), label);
+    const grid = Grid.fromText(design.chart);
+    const put = entriesOf(design.other_stitches ?? [], grid.columns);
+    if (rest(content) === rest(design)) this.document.replace(grid, label, put);
     else this.document.load(design, label);
   }
 
