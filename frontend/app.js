@@ -17,6 +17,7 @@ import { Keeper } from "./sync/keeper.js";
 import { sharedBanner } from "./panels/sharedbanner.js";
 import { fabricview } from "./panels/fabric/fabricview.js";
 import { panelOpener } from "./panels/registry.js";
+import { balancebar } from "./panels/chart/balancebar.js";
 import { chartstrip } from "./panels/chart/chartstrip.js";
 import { messages } from "./widgets/messages.js";
 import { tips } from "./widgets/tips.js";
@@ -78,6 +79,7 @@ await nextTask();
 
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);
+balancebar(byId("chart-host"), studio);
 messages(byId("messages"), byId("offline"), studio);
 tips();
 themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));

@@ -21,6 +21,11 @@ export class Others {
     return this.#codes.size;
   }
 
+  /** Places and codes, in any order. */
+  get all() {
+    return this.#codes.entries();
+  }
+
   /** Places and codes, from the bottom left. @returns {[number, string][]} */
   get entries() {
     return [...this.#codes].sort(([a], [b]) => a - b);
@@ -167,6 +172,26 @@ export function within(others, columns, { row0, column0, row1, column1 }) {
     else entries.push([(row - row0) * (column1 - column0) + column - column0, code]);
   }
   return { entries, cut };
+}
+
+/**
+ * The stitches of a chart that is repeated from the bottom left up to a size, as far as they are whole.
+ *
+ * @param {{grid: Grid, others: Others}} chart
+ * @param {number} rows
+ * @param {number} columns
+ */
+export function tiledStitches({ grid, others }, rows, columns) {
+  /** @type {[number, string][]} */
+  const put = [];
+  for (const [i, code] of others.all) {
+    for (let row = Math.floor(i / grid.columns); row < rows; row += grid.rows) {
+      for (let column = i % grid.columns; column + kindOf(code).width <= columns; column += grid.columns) {
+        put.push([row * columns + column, code]);
+      }
+    }
+  }
+  return put;
 }
 
 /**

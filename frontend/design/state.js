@@ -12,7 +12,7 @@
 
 import { boxOfRuns, flip, unpack } from "../grid/bits.js";
 import { Grid } from "../grid/grid.js";
-import { Others, written } from "./others.js";
+import { Others, codesText, written } from "./others.js";
 import { Region } from "./regions.js";
 import { Links, Repeat } from "./repeats.js";
 import { surroundings, updateSurroundings } from "../grid/segments.js";
@@ -64,6 +64,11 @@ export class ChartState {
   /** Lines of x and ., the top row first; null if every stitch is there. */
   get outlineText() {
     return this.shaped ? outlineText(this.outline, this.grid.columns) : null;
+  }
+
+  /** Its stitches in lines: K and P, or codes where there are others; the top row first. */
+  get text() {
+    return this.others.size ? codesText(this.grid, this.others) : this.grid.text;
   }
 
   /** @returns {Content} */

@@ -18,7 +18,9 @@
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
+import { paced } from "../core/paced.js";
 import { Grid } from "../grid/grid.js";
+import { imbalances } from "../design/balance.js";
 import { PURL } from "../design/ink.js";
 import { entriesOf } from "../design/others.js";
 import { Signal } from "../core/signal.js";
@@ -86,6 +88,13 @@ export class Studio {
         problem: null,
       }),
     );
+    /** Rows that take more or fewer stitches than the row below has. */
+    this.balance = new Signal(/** @type {import("../design/balance.js").Imbalance[]} */ (imbalances(document)));
+    const weigh = paced(() => {
+      const rows = imbalances(document);
+      if (rows.length || this.balance.value.length) this.balance.value = rows;
+    }, 0);
+    document.onChange(weigh);
     this.step = new Signal(0);
     this.online = new Signal(true);
     /** Who is signed in with this browser, if anybody is. */

@@ -198,7 +198,10 @@ function describe(studio, view) {
   const [row, column] = cell;
   const i = grid.index(row, column);
   const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
-  const parts = [`Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`];
+  const place = `Row ${row + 1} ${side}, stitch ${grid.columns - column}`;
+  const other = studio.document.others.kind(i);
+  if (other) return `${place}: ${other.name} (${other.words}): ${other.deed}`;
+  const parts = [`${place}: ${grid.purl[i] ? "purl" : "knit"}`];
   if (studio.rectangles.value && studio.kinds().length) {
     parts.push(give(studio, row, column, view.blockSide.value));
     return parts.join(" · ");

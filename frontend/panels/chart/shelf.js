@@ -18,6 +18,7 @@ import { ownInk, ownPatterns } from "../../design/shelf.js";
 import { loadShelf, saveShelf } from "../../design/store.js";
 import { h, inTurn } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
+import { motifPicture } from "../stitches/picture.js";
 
 const SIDE = 34;
 /** A thumbnail shows at most this many stitches a side. */
@@ -65,7 +66,8 @@ export function shelf(host, studio, context) {
     const chosen = studio.ink.value;
     const own = ownPatterns(chart.shelf, loadShelf()).map(ownInk);
     const region = chosen.target.startsWith("region:") ? [chosen] : [];
-    const inks = [KNIT, PURL, FLIP, NO_STITCH, ...region, ...studio.shelf.value, ...own];
+    const other = chosen.others.length ? [chosen] : [];
+    const inks = [KNIT, PURL, FLIP, NO_STITCH, ...other, ...region, ...studio.shelf.value, ...own];
     const symbols = studio.editing.symbols.value;
     const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette, symbols]);
     if (what !== shown) {
@@ -88,6 +90,7 @@ export function shelf(host, studio, context) {
         ),
       );
       void inTurn(swatches, ({ ink, picture }) => {
+        if (ink.others.length) return void (picture.src = motifPicture(ink, symbols));
         picture.src = thumbnail(ink, palette, symbols, chart.region(ink.target.slice(7))?.colour ?? "");
       });
     }

@@ -19,6 +19,7 @@ import { dialog } from "../../widgets/dialog.js";
 
 /** Search words that an action's name does not contain. @type {Record<string, string>} */
 const WORDS = {
+  stitches: "yarn over eyelet lace cable cross slip tuck twisted symbols motif",
   garments: "measure measurements pressure glove sock sleeve brace plan",
   "open-find": "pressure search target stretch stiffness",
   "open-fill": "target wish stiffness softer stiffer relax region",

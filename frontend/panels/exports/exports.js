@@ -212,9 +212,31 @@ export function create(studio, { view }) {
 
   /** Time, yarn and tension of a program, below the file. @param {Partial<ExportRequest>} request of the file */
   async function explain(request) {
-    const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number, from_row } =
-      request;
-    const design = { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number };
+    const {
+      chart,
+      other_stitches,
+      outline,
+      regions,
+      material,
+      machine,
+      finish,
+      gauge,
+      linear_density_tex,
+      stitch_number,
+      from_row,
+    } = request;
+    const design = {
+      chart,
+      other_stitches,
+      outline,
+      regions,
+      material,
+      machine,
+      finish,
+      gauge,
+      linear_density_tex,
+      stitch_number,
+    };
     const [price_per_kg, price_per_hour] = [perKg, perHour].map(({ valueAsNumber: n }) => (n > 0 ? n : null));
     const body = { ...design, from_row, price_per_kg, price_per_hour };
     const report = await attempt(status, () => api.run("program-report", /** @type {ProgramReportRequest} */ (body)));
