@@ -14,6 +14,8 @@ import { IMAGES, kindOf } from "../grid/kinds.js";
 import { lightness } from "../state/palette.js";
 import { addSign, loadSigns, signOf } from "./symbols.js";
 
+/** Colourings that are no maps of numbers: there these stitches have the colours of their groups. */
+export const GROUNDED = new Set(["stitches", "fabrics", "segments"]);
 /** Symbols are left out on cells narrower than this. */
 const MIN_SYMBOL = 7;
 

@@ -195,7 +195,7 @@ export class Painter {
     const tool = studio.tool.value;
     if (!gesture) return;
     const { document: chart } = studio;
-    const { grid, codes, outline } = chart;
+    const { grid, codes, outline, others } = chart;
     if (tool.mode === "once" && gesture.current !== gesture.start) return;
     if (tool.mode === "place") {
       view.preview.value = placedBox(studio.editing.repeat, grid, gesture.start, gesture.current);
@@ -210,7 +210,7 @@ export class Painter {
       }
       return;
     }
-    const spans = tool.spans(gesture, { grid, codes, outline, size: studio.size.value, ink: this.#ink });
+    const spans = tool.spans(gesture, { grid, codes, outline, others, size: studio.size.value, ink: this.#ink });
     const symmetry = studio.symmetry.value;
     if (tool.mode === "select") {
       studio.selection.value = combined(this.#before, spans, grid, this.#combination, symmetry);

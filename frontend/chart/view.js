@@ -16,7 +16,7 @@ import { OVERLAYS } from "../state/overlays.js";
 import { pixel, readPalette } from "../state/palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
 import { drawCrosses, sideOfCrossed } from "./crosses.js";
-import { drawGrounds, drawSigns } from "./others.js";
+import { GROUNDED, drawGrounds, drawSigns } from "./others.js";
 import { signsLoaded } from "./symbols.js";
 import { drawRectangles, roomInStitches, sideOfBlocks } from "./rectangles.js";
 import { drawRulers } from "./rulers.js";
@@ -191,7 +191,7 @@ export class ChartView {
     if (!shown) return;
     const size = tool.sized ? studio.size.value : 1;
     const before = Math.floor((size - 1) / 2);
-    const stamp = tool.id === "stamp" ? studio.ink.value.repeat : null;
+    const stamp = tool.id === "stamp" || studio.ink.value.isWide ? studio.ink.value.repeat : null;
     const [row0, column0] = [cell[0] - before, cell[1] - before];
     const box = { row0, column0, row1: row0 + (stamp?.rows ?? size), column1: column0 + (stamp?.columns ?? size) };
     this.#around(this.#cursor, box);
@@ -381,9 +381,6 @@ export class ChartView {
 function paper({ knit }) {
   return { table: new Uint32Array(128).fill(pixel(knit)) };
 }
-
-/** Colourings that are no maps of numbers: other stitches have the colours of their groups. */
-const GROUNDED = new Set(["stitches", "fabrics", "segments"]);
 
 /** Shown where the chosen overlay has no values (yet). */
 const FALLBACK = OVERLAYS[1];

@@ -13,6 +13,7 @@
  */
 
 import { MAX_SIDE, isChartText } from "../grid/grid.js";
+import { readCodes } from "../grid/kinds.js";
 import { faultOf } from "./others.js";
 
 export const FORMAT = "knitcore-design";
@@ -61,7 +62,13 @@ export function readDesign(value) {
 /** @param {Record<string, unknown>} value @returns {Content} @throws {DesignError} */
 export function readContent(value) {
   if (typeof value.chart !== "string") throw new DesignError("It holds no chart.");
-  const chart = value.chart.trim();
+  let chart = value.chart.trim();
+  let runs = value.other_stitches;
+  const read = isChartText(chart) ? null : readCodes(chart); // as the library may write it
+  if (read?.others.length && !items(runs, "other stitches").length) {
+    ({ chart } = read);
+    runs = read.others.map(([row, column, codes]) => ({ row, column, codes }));
+  }
   const {
     length: rows,
     0: { length: columns },
@@ -75,7 +82,7 @@ export function readContent(value) {
   if (!isChartText(chart)) throw new DesignError("Its chart is not rows of K and P of one length.");
   return {
     chart,
-    other_stitches: readOthers(value.other_stitches, rows, columns),
+    other_stitches: readOthers(runs, rows, columns),
     outline: readOutline(value.outline ?? null, rows, columns),
     regions: items(value.regions, "regions").map((item) => readRegion(item, rows, columns)),
     repeats: items(value.repeats, "repeats").map((item) => readRepeat(item, rows, columns)),

@@ -32,7 +32,7 @@ export function snapshotOf({ grid: { rows, columns, purl }, outline, regions, re
 }
 
 /** @param {Content} content @returns {Snapshot} */
-export function snapshotFrom({ chart, other_stitches: runs, outline, regions, repeats, shelf }) {
+export function snapshotFrom({ chart, other_stitches: runs = [], outline, regions, repeats, shelf }) {
   const { rows, columns, purl } = Grid.fromText(chart);
   const marks = outline?.split("\n").toReversed().join("");
   return {

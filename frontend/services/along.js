@@ -33,12 +33,12 @@ export function waysOf(machines, chosen) {
 
 /** @param {Pick<Studio, "document" | "machine" | "materialId">} studio @param {string} way @returns {KnitAlongRequest} */
 export function alongRequest({ document: chart, machine: { value: chosen }, materialId }, way) {
-  const { chart: text, other_stitches: others = [], outline, regions, repeats, shelf } = chart.content;
-  const parts = { ...(others.length && { other_stitches: others }), outline, regions, repeats, shelf };
+  const { chart: plain, other_stitches: others, outline, regions, repeats, shelf } = chart.content;
+  const parts = { chart: others?.length ? chart.text : plain, outline, regions, repeats, shelf };
   const byHand = way === "flat" || way === "round";
   const machine = byHand ? null : ownMachine(chosen)?.identifier === way ? chosen : way;
   const construction = way === "round" ? "round" : "flat";
-  return { chart: text, ...parts, machine, construction, material: materialId.value };
+  return { ...parts, machine, construction, material: materialId.value };
 }
 
 /**

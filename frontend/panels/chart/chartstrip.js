@@ -9,7 +9,6 @@
 import { withKey } from "../../core/pointing.js";
 import { action } from "../../actions/registry.js";
 import { h } from "../../elements/dom.js";
-import { KIND_GROUPS, kindOf } from "../../grid/kinds.js";
 import { segmented } from "../../widgets/fields.js";
 import { actionButton } from "../../widgets/buttons.js";
 import { fullButton } from "../../widgets/full.js";
@@ -43,7 +42,6 @@ export function chartstrip(host, context) {
     key.replaceChildren(
       entry("knit", "knit"),
       entry("purl", "purl"),
-      ...groupsOf(chart).map((group) => entry(group, group)),
       ...(chart.shaped ? [entry("none", "no stitch")] : []),
     );
     const symbol = drawn === "loops" ? "stitches drawn as loops" : drawn === "plain" ? "no symbols" : SAID[drawn];
@@ -51,12 +49,10 @@ export function chartstrip(host, context) {
   };
   editing.look.watch(showKey);
   editing.symbols.listen(showKey);
-  const parts = () => [chart.shaped, ...groupsOf(chart)].join();
-  let keyed = parts();
+  let shaped = chart.shaped;
   chart.onSettle(() => {
-    const now = parts();
-    if (keyed !== now) showKey();
-    keyed = now;
+    if (shaped !== chart.shaped) showKey();
+    shaped = chart.shaped;
   });
 
   const look = h(
@@ -113,12 +109,6 @@ export function chartstrip(host, context) {
       fullButton("chart", "strip-button bare centred rounded"),
     ),
   );
-}
-
-/** Groups of the chart's stitches that are neither knit nor purl. @param {import("../../design/state.js").ChartState} chart */
-function groupsOf({ others }) {
-  const groups = new Set(Array.from(others.all, ([, code]) => kindOf(code).group));
-  return KIND_GROUPS.filter((group) => groups.has(group));
 }
 
 /**

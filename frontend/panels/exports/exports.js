@@ -212,22 +212,10 @@ export function create(studio, { view }) {
 
   /** Time, yarn and tension of a program, below the file. @param {Partial<ExportRequest>} request of the file */
   async function explain(request) {
-    const {
-      chart,
-      other_stitches,
-      outline,
-      regions,
-      material,
-      machine,
-      finish,
-      gauge,
-      linear_density_tex,
-      stitch_number,
-      from_row,
-    } = request;
+    const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number, from_row } =
+      request;
     const design = {
       chart,
-      other_stitches,
       outline,
       regions,
       material,

@@ -97,22 +97,26 @@ export function create(studio) {
     );
 
   const show = () => {
-    const sought = search.value.trim().toLowerCase();
+    const sought = search.value.trim().toLowerCase().split(/\s+/);
+    const usual = !search.value.trim();
     /** @param {string} text */
-    const fits = (text) => sought.split(/\s+/).every((word) => text.toLowerCase().includes(word));
-    const sections = KIND_GROUPS.flatMap((group) => {
-      const kinds = KINDS.filter(
-        (kind) =>
-          kind.group === group &&
-          (sought ? fits(`${kind.name} ${kind.words} ${kind.code} ${group} ${ALSO[group]}`) : isUsual(kind)),
-      );
-      const motifs = MOTIFS.filter(
-        (each) => each.group === group && fits(`${each.name} ${each.note} ${group} ${ALSO[group]}`),
-      );
-      if (!kinds.length && !motifs.length) return [];
-      return [section(HEADINGS[group] ?? group, group, motifs.map(motif), kinds.map(stitch))];
-    });
-    if (!sought) sections.push(remark("Wider cables, purled ones and rarer decreases: find them by name."));
+    const fits = (text) => sought.every((word) => text.toLowerCase().includes(word));
+    /** @param {(group: string) => string} also what else the stitches of a group are called */
+    const sectionsFor = (also) =>
+      KIND_GROUPS.flatMap((group) => {
+        const own = KINDS.filter((kind) => kind.group === group);
+        const kinds = own.filter((kind) =>
+          usual ? isUsual(kind) : fits(`${kind.name} ${kind.words} ${kind.code} ${also(group)}`),
+        );
+        const motifs = MOTIFS.filter(
+          (each) => each.group === group && fits(`${each.name} ${each.note} ${also(group)}`),
+        );
+        if (!kinds.length && !motifs.length) return [];
+        return [section(HEADINGS[group] ?? group, group, motifs.map(motif), kinds.map(stitch))];
+      });
+    const named = sectionsFor(() => "");
+    const sections = named.length ? named : sectionsFor((group) => `${group} ${ALSO[group]}`);
+    if (usual) sections.push(remark("Wider cables, purled ones and rarer decreases: find them by name."));
     list.replaceChildren(...(sections.length ? sections : [remark("No stitch has this name.")]));
     mark();
   };

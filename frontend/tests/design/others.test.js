@@ -44,6 +44,12 @@ test("runs of neighbours are read and written the same", () => {
   assert.deepEqual(ChartDocument.read(chart.content).content, content);
 });
 
+test("a file whose chart is codes is read, too", () => {
+  const content = readContent({ chart: "KO/\nKKP" });
+  assert.equal(content.chart, "KKK\nKKP");
+  assert.deepEqual(ChartDocument.read(content).text, "KO/;\nKKP");
+});
+
 test("a file with stitches outside, on each other or unknown is refused in words", () => {
   /** @param {...unknown} runs */
   const reading =
