@@ -8,7 +8,7 @@ import { api } from "../api.js";
 import { predictionOf } from "./belonging.js";
 import { Latest } from "./latest.js";
 import { scopeOf } from "./scope.js";
-import { anyClothIn, stitchesIn } from "./stitches.js";
+import { anyClothIn, remarksOn } from "./stitches.js";
 
 const DELAY_MS = 80;
 
@@ -23,7 +23,7 @@ export function startPredictor(studio) {
       async (signal) => {
         const scope = scopeOf(studio);
         const { basis } = belonging;
-        const { problem } = stitchesIn(studio, scope);
+        const { problem } = remarksOn(studio, scope);
         if (problem)
           return void (prediction.value = { value: null, busy: false, problem, basis: {}, scope: scope.kind });
         const body = { ...anyClothIn(studio, scope), ...scope.shaped, hand: true };

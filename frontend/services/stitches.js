@@ -15,6 +15,10 @@ import { Others, codesText, within } from "../design/others.js";
 const OUTLINED = "Of its knits and purls: a piece with an outline is predicted from these alone.";
 const CUT = "Of its knits and purls: the edge of this part cuts rows of lace or cables.";
 
+/** What is to be said of a part, and what keeps its numbers away; nothing where all its stitches are knits and purls. @param {Pick<Studio, "document">} studio @param {Scope} scope @returns {Pick<Stitches, "note" | "problem">} */
+export const remarksOn = (studio, scope) =>
+  studio.document.others.size ? stitchesIn(studio, scope) : { note: "", problem: null };
+
 /** @param {Pick<Studio, "document">} studio @param {Scope} scope @returns {Stitches} */
 export function stitchesIn({ document: { others, grid } }, { kind, grid: part, box, shaped }) {
   const plain = { chart: part.text, note: "", problem: null };

@@ -185,8 +185,12 @@ export function create(studio, { view }) {
     outcome.replaceChildren(
       h("p", { class: "muted" }, kind.to === "knitout" ? "Checking it on a simulated machine …" : "One moment …"),
     );
+    const { other_stitches: others, ...design } = studio.toDocument();
+    // The project file has knits and purls, and the others beside them; the rest has all in one chart.
+    const stitches = kind.to === "design" ? { other_stitches: others } : { chart: studio.document.text };
     const body = {
-      ...studio.toDocument(),
+      ...design,
+      ...stitches,
       format: undefined,
       version: undefined,
       ...chosen,

@@ -383,7 +383,7 @@ export function viewRequest(studio, view) {
   }
   return {
     ...pieceOf(studio),
-    chart: stitchesShown(studio),
+    ...(chart.others.size && { chart: stitchesShown(studio) }),
     colour: /** @type {ViewRequest["colour"]} */ (colour),
     palette,
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],

@@ -12,7 +12,7 @@ import { paced } from "../../core/paced.js";
 import { sourceInWords } from "../../core/plainly.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
 import { scopeOf, sizeAtRest } from "../../services/scope.js";
-import { stitchesIn } from "../../services/stitches.js";
+import { remarksOn } from "../../services/stitches.js";
 import { placeOf, predictionOf } from "../../services/belonging.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
@@ -186,13 +186,13 @@ export function inspector(host, studio) {
     fill(table, value);
     feel(value, part);
     others.textContent = value?.other_stitches ? othersInWords(value) : "";
-    plain.textContent = value ? stitchesIn(studio, part).note : "";
+    plain.textContent = value ? remarksOn(studio, part).note : "";
     source.hidden = !value;
     gauge.show(value);
     if (value) {
       const lines = [
         part.note,
-        stitchesIn(studio, part).note,
+        remarksOn(studio, part).note,
         ...value.notes,
         `90 % intervals: ${value.interval_source}`,
       ].filter(Boolean);
