@@ -26,6 +26,10 @@ const HOVER_MS = 24;
 /** @type {Cell} */
 const CORNER = [0, 0];
 
+/** @param {import("../design/ink.js").Ink} ink */
+const tooLarge = ({ name, repeat }) =>
+  `${name} has ${repeat?.columns} × ${repeat?.rows} stitches: this chart is too small for it.`;
+
 export class Painter {
   /** @type {Gesture | null} */ #gesture = null;
   #ink;
@@ -194,6 +198,11 @@ export class Painter {
     const gesture = this.#gesture;
     const tool = studio.tool.value;
     if (!gesture) return;
+    if (tool.id === "stamp") {
+      const place = this.#ink.stampAt(gesture.current, studio.document.grid);
+      if (!place) return studio.tell(tooLarge(this.#ink));
+      gesture.current = place;
+    }
     const { document: chart } = studio;
     const { grid, codes, outline, others } = chart;
     if (tool.mode === "once" && gesture.current !== gesture.start) return;

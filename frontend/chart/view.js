@@ -192,7 +192,10 @@ export class ChartView {
     const size = tool.sized ? studio.size.value : 1;
     const before = Math.floor((size - 1) / 2);
     const stamp = tool.id === "stamp" || studio.ink.value.isWide ? studio.ink.value.repeat : null;
-    const [row0, column0] = [cell[0] - before, cell[1] - before];
+    const [row0, column0] = (tool.id === "stamp" && studio.ink.value.stampAt(cell, grid)) || [
+      cell[0] - before,
+      cell[1] - before,
+    ];
     const box = { row0, column0, row1: row0 + (stamp?.rows ?? size), column1: column0 + (stamp?.columns ?? size) };
     this.#around(this.#cursor, box);
   }

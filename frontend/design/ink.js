@@ -36,6 +36,19 @@ export class Ink {
     return this.others.length === 1 && this.repeat?.rows === 1 && this.repeat.columns > 1;
   }
 
+  /**
+   * Where its stamp is put for a pointer: one of lace or cables is moved into the chart, so that its rows stay whole.
+   *
+   * @param {Cell} cell
+   * @param {Grid} grid
+   * @returns {Cell | null} null where the chart is too small for it
+   */
+  stampAt([row, column], grid) {
+    if (!this.repeat || !this.others.length) return [row, column];
+    const [high, wide] = [grid.rows - this.repeat.rows, grid.columns - this.repeat.columns];
+    return high < 0 || wide < 0 ? null : [Math.min(row, high), Math.min(column, wide)];
+  }
+
   /** The stitch that this ink puts at a place. @param {Cell} cell @param {Cell} origin where the repeat begins */
   at([row, column], [originRow, originColumn]) {
     const repeat = /** @type {Grid} */ (this.repeat);

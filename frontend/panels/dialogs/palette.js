@@ -11,6 +11,8 @@
 
 import { shown } from "../../core/pointing.js";
 import { ACTIONS } from "../../actions/registry.js";
+import { codesInk } from "../../design/ink.js";
+import { KINDS } from "../../grid/kinds.js";
 import { OVERLAYS } from "../../state/overlays.js";
 import { POSES } from "../../state/seeing.js";
 import { byId, h } from "../../elements/dom.js";
@@ -56,6 +58,12 @@ function entries(context) {
       icon: action.icon,
       key: action.keys[0],
       perform: () => action.perform(context),
+    })),
+    ...KINDS.filter(({ code }) => code.length === 1).map((kind) => ({
+      label: `Paint: ${kind.name}`,
+      words: `${kind.words} ${kind.group}`,
+      perform: () =>
+        studio.paintWith(codesInk(`stitch-${kind.code}`, kind.words, kind.code, `${kind.name}: ${kind.deed}`)),
     })),
     ...OVERLAYS.filter((overlay) => overlay.available(studio)).map((overlay) => ({
       label: `Colour the chart by: ${overlay.label.toLowerCase()}`,
