@@ -17,7 +17,6 @@ import { Keeper } from "./sync/keeper.js";
 import { sharedBanner } from "./panels/sharedbanner.js";
 import { fabricview } from "./panels/fabric/fabricview.js";
 import { panelOpener } from "./panels/registry.js";
-import { balancebar } from "./panels/chart/balancebar.js";
 import { chartstrip } from "./panels/chart/chartstrip.js";
 import { messages } from "./widgets/messages.js";
 import { tips } from "./widgets/tips.js";
@@ -79,7 +78,13 @@ await nextTask();
 
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);
-balancebar(byId("chart-host"), studio);
+/** Rows that do not balance are seldom: what mends them comes with the first. */
+let mending = false;
+studio.balance.watch(async ({ length }) => {
+  if (mending || !length) return;
+  mending = true;
+  (await import("./panels/chart/balancebar.js")).balancebar(byId("chart-host"), studio);
+});
 messages(byId("messages"), byId("offline"), studio);
 tips();
 themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));

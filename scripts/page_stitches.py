@@ -1,7 +1,7 @@
 """Write the stitches as the page needs them (``make types``).
 
-``frontend/grid/stitches.js`` has what each is and does; ``frontend/chart/signs.js`` its symbols,
-which the page loads when it draws the first.
+``frontend/grid/stitches.js`` has what each is; ``frontend/grid/names.js`` its words and
+``frontend/chart/signs.js`` its symbols, which the page loads when it draws the first.
 
 Both are made of :mod:`knitcore.chart.stitch_kinds`, so that a new stitch is one line there.
 """
@@ -67,20 +67,6 @@ def _crossing(stitch: StitchType) -> str:
     return f"{len(front)} {verb} to the {side} in front of {behind}"
 
 
-def _row(stitch: StitchType) -> list[object]:
-    return [
-        stitch.code,
-        stitch.name,
-        stitch.words,
-        deed_of(stitch),
-        GROUPS.index(group_of(stitch)),
-        stitch.takes,
-        "".join(map(_shown, stitch.sites)),
-        BY_CODE[stitch.mirrored.code],
-        BY_CODE[stitch.turned_over.code],
-    ]
-
-
 def _shown(site: Site) -> str:
     """K or P as the face shows it; an H holds the stitch below and looks like that."""
     if site.act is YarnAct.THROUGH:
@@ -88,17 +74,38 @@ def _shown(site: Site) -> str:
     return "H" if site.sources else "K"
 
 
+def _written(place: int, stitch: StitchType) -> str:
+    """The stitch in few letters: the page loads all before anything is painted."""
+    images = (stitch.mirrored, stitch.turned_over)
+    parts = [
+        stitch.code,
+        "".join(map(_shown, stitch.sites)),
+        "" if stitch.takes == stitch.width else str(stitch.takes),
+        *(str(BY_CODE[image.code] - place) for image in images),
+        str(GROUPS.index(group_of(stitch))),
+    ]
+    return "~".join(parts)
+
+
 def stitches_module() -> str:
-    """The module of what each stitch is."""
-    rows = ",\n".join(f"  {json.dumps(_row(stitch))}" for stitch in STITCHES)
+    """The module of what each stitch is, and its images are."""
+    written = " ".join(_written(place, stitch) for place, stitch in enumerate(STITCHES))
     return (
         f"{HEAD}/** @type {{readonly string[]}} */\n"
         f"export const GROUPS = {json.dumps(GROUPS)};\n\n"
-        "/**\n * Code, name, abbreviation, deed, group, loops taken, K or P shown by each site (H: "
-        "as below),\n * places of the mirror image and of the back.\n *\n"
-        " * @type {readonly (readonly [string, string, string, string, number, number, string, "
-        "number,\n *   number])[]}\n */\n"
-        f"export const STITCHES = [\n{rows},\n];\n"
+        "/**\n * Code, K or P shown by each site (H: as below), loops taken where they are not as "
+        "many, steps to the\n * mirror image and to the back in this list, group.\n */\n"
+        f"export const STITCHES = {json.dumps(written)};\n"
+    )
+
+
+def names_module() -> str:
+    """The module of names, abbreviations and deeds by code."""
+    names = {stitch.code: [stitch.name, stitch.words, deed_of(stitch)] for stitch in STITCHES}
+    return (
+        f"{HEAD}/**\n * Name, abbreviation and deed by code.\n *\n"
+        " * @type {Record<string, [name: string, words: string, deed: string]>}\n */\n"
+        f"export const NAMES = {json.dumps(names, indent=1)};\n"
     )
 
 
@@ -130,8 +137,12 @@ def signs_module() -> str:
 
 
 def write() -> None:
-    """Write both modules where they differ from what is there."""
-    for name, text in (("grid/stitches.js", stitches_module()), ("chart/signs.js", signs_module())):
+    """Write the modules that differ from what is there."""
+    for name, text in (
+        ("grid/stitches.js", stitches_module()),
+        ("grid/names.js", names_module()),
+        ("chart/signs.js", signs_module()),
+    ):
         file = FRONTEND / name
         if not file.is_file() or file.read_text(encoding="utf-8") != text:
             file.write_text(text, encoding="utf-8")

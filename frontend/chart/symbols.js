@@ -18,16 +18,26 @@ export const signsLoaded = new Signal(false);
 let loading = null;
 /** @type {Record<string, Record<string, string>>} */
 let written = {};
+/** @type {Record<string, [name: string, words: string, deed: string]>} */
+let names = {};
 /** @type {Map<string, Sign>} */
 const known = new Map();
 
-/** @returns {Promise<void>} when they are there */
+/** @returns {Promise<void>} when they and the names are there */
 export function loadSigns() {
-  loading ??= import("./signs.js").then(({ SIGNS }) => {
+  loading ??= Promise.all([import("./signs.js"), import("../grid/names.js")]).then(([{ SIGNS }, { NAMES }]) => {
     written = SIGNS;
+    names = NAMES;
     signsLoaded.value = true;
   });
   return loading.catch(() => void (loading = null)); // away for now: tried again with the next one
+}
+
+/** A stitch in words; "" before they are loaded. @param {string} code */
+export function inWords(code) {
+  if (!names[code]) return "";
+  const [name, abbreviation, deed] = names[code];
+  return `${name} (${abbreviation}): ${deed}`;
 }
 
 /** The symbol of a stitch; an empty one before they are loaded. @param {string} code @param {Symbols} style @returns {Sign} */

@@ -95,6 +95,9 @@ export function codesInk(id, name, codes, note) {
   return new Ink(id, name, ChartGrid.fromText(chart), note, "stitches", others);
 }
 
+/** An ink of one stitch. @param {string} code @param {[name: string, words: string, deed: string]} words */
+export const stitchInk = (code, [name, words, deed]) => codesInk(`stitch-${code}`, words, code, `${name}: ${deed}`);
+
 /**
  * Stitches to set: the ink at each cell, and its mirror images; and those of them that are neither knit nor purl.
  *

@@ -4,9 +4,6 @@
  *
  * @typedef {object} Kind
  * @property {string} code
- * @property {string} name
- * @property {string} words its abbreviation
- * @property {string} deed what it does to the cloth
  * @property {string} group
  * @property {number} width columns that it stands over
  * @property {number} takes loops of the row below
@@ -15,14 +12,12 @@
 
 import { GROUPS, STITCHES } from "./stitches.js";
 
-const ALL = STITCHES.map(([code, name, words, deed, group, takes, shown]) => ({
+const ROWS = STITCHES.split(" ").map((text) => text.split("~"));
+const ALL = ROWS.map(([code, shown, takes, , , group]) => ({
   code,
-  name,
-  words,
-  deed,
-  group: GROUPS[group],
+  group: GROUPS[Number(group)],
   width: shown.length,
-  takes,
+  takes: takes ? Number(takes) : shown.length,
   shown,
 }));
 const PLACES = new Map(ALL.map(({ code }, place) => [code, place]));
@@ -46,11 +41,14 @@ export const kindOf = (code) => ALL[placeOf(code)];
 /** Whether a stitch of this code is neither knit nor purl. @param {string} code */
 export const isOther = (code) => (PLACES.get(code) ?? 0) > 1;
 
+/** The stitch that a field of the list leads to. @param {string} code @param {3 | 4} field */
+const image = (code, field) => ALL[placeOf(code) + Number(ROWS[placeOf(code)][field])].code;
+
 /** @param {string} code */
-const mirrored = (code) => ALL[STITCHES[placeOf(code)][7]].code;
+const mirrored = (code) => image(code, 3);
 
 /** @param {string} code seen from the face @returns {string} the same from the back */
-const turnedOver = (code) => ALL[STITCHES[placeOf(code)][8]].code;
+const turnedOver = (code) => image(code, 4);
 
 /** What a stitch becomes where its chart is changed. @type {Record<string, (code: string) => string>} */
 export const IMAGES = {

@@ -9,6 +9,7 @@ import { byHand, withKey } from "../../core/pointing.js";
 import { OVERLAYS, shownOverlay } from "../../state/overlays.js";
 import { largestStrain } from "../../chart/crosses.js";
 import { GROUNDED } from "../../chart/others.js";
+import { inWords, loadSigns, signsLoaded } from "../../chart/symbols.js";
 import { groupAt, largestExtensibility, meanExtensibility } from "../../chart/rectangles.js";
 import { LINES } from "../../core/directions.js";
 import { figure, percent, percentRange, range } from "../../core/format.js";
@@ -163,6 +164,7 @@ export function overlaybar(host, studio, view) {
   read();
   const readSoon = paced(read, READ_MS);
   view.hover.listen(readSoon);
+  signsLoaded.listen(readSoon);
   studio.document.onChange(readSoon);
   studio.step.listen(() => {
     if (pulled !== Boolean(studio.currentStrain())) show();
@@ -221,7 +223,8 @@ function describe(studio, view) {
   const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
   const place = `Row ${row + 1} ${side}, stitch ${grid.columns - column}`;
   const other = studio.document.others.kind(i);
-  if (other) return `${place}: ${other.name} (${other.words}): ${other.deed}`;
+  if (other) void loadSigns(); // and the names
+  if (other) return `${place}: ${inWords(other.code)}`;
   const parts = [`${place}: ${grid.purl[i] ? "purl" : "knit"}`];
   if (studio.rectangles.value && studio.kinds().length) {
     parts.push(give(studio, row, column, view.blockSide.value));

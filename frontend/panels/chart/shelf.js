@@ -10,6 +10,7 @@
 
 import { withKey } from "../../core/pointing.js";
 import { action } from "../../actions/registry.js";
+import { loadSigns } from "../../chart/symbols.js";
 import { readPalette } from "../../state/palette.js";
 import { FLIP, KNIT, NO_STITCH, PURL } from "../../design/ink.js";
 import { motifText } from "../../grid/grid.js";
@@ -18,7 +19,6 @@ import { ownInk, ownPatterns } from "../../design/shelf.js";
 import { loadShelf, saveShelf } from "../../design/store.js";
 import { h, inTurn } from "../../elements/dom.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { motifPicture } from "../stitches/picture.js";
 
 const SIDE = 34;
 /** A thumbnail shows at most this many stitches a side. */
@@ -90,7 +90,7 @@ export function shelf(host, studio, context) {
         ),
       );
       void inTurn(swatches, ({ ink, picture }) => {
-        if (ink.others.length) return void (picture.src = motifPicture(ink, symbols));
+        if (ink.others.length) return void drawMotif(picture, ink, symbols);
         picture.src = thumbnail(ink, palette, symbols, chart.region(ink.target.slice(7))?.colour ?? "");
       });
     }
@@ -120,6 +120,12 @@ export function shelf(host, studio, context) {
   remember();
   host.append(list, removeButton, fillButton);
   return show;
+}
+
+/** The picture of an ink of lace or cables, once what draws it is there. @param {HTMLImageElement} picture @param {Ink} ink @param {Symbols} symbols */
+async function drawMotif(picture, ink, symbols) {
+  const [{ motifPicture }] = await Promise.all([import("../stitches/picture.js"), loadSigns()]);
+  picture.src = motifPicture(ink, symbols);
 }
 
 /**

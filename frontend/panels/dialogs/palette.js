@@ -11,7 +11,9 @@
 
 import { shown } from "../../core/pointing.js";
 import { ACTIONS } from "../../actions/registry.js";
-import { codesInk } from "../../design/ink.js";
+import { loadSigns } from "../../chart/symbols.js";
+import { stitchInk } from "../../design/ink.js";
+import { NAMES } from "../../grid/names.js";
 import { KINDS } from "../../grid/kinds.js";
 import { OVERLAYS } from "../../state/overlays.js";
 import { POSES } from "../../state/seeing.js";
@@ -59,11 +61,10 @@ function entries(context) {
       key: action.keys[0],
       perform: () => action.perform(context),
     })),
-    ...KINDS.filter(({ code }) => code.length === 1).map((kind) => ({
-      label: `Paint: ${kind.name}`,
-      words: `${kind.words} ${kind.group}`,
-      perform: () =>
-        studio.paintWith(codesInk(`stitch-${kind.code}`, kind.words, kind.code, `${kind.name}: ${kind.deed}`)),
+    ...KINDS.filter(({ code }) => code.length === 1).map(({ code, group }) => ({
+      label: `Paint: ${NAMES[code][0]}`,
+      words: `${NAMES[code][1]} ${group}`,
+      perform: () => void loadSigns().then(() => studio.paintWith(stitchInk(code, NAMES[code]))),
     })),
     ...OVERLAYS.filter((overlay) => overlay.available(studio)).map((overlay) => ({
       label: `Colour the chart by: ${overlay.label.toLowerCase()}`,

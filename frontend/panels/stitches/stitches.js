@@ -10,9 +10,10 @@
 import { besides } from "../../core/pointing.js";
 import { onTheme } from "../../state/palette.js";
 import { loadSigns } from "../../chart/symbols.js";
-import { codesInk } from "../../design/ink.js";
+import { codesInk, stitchInk } from "../../design/ink.js";
 import { MOTIFS } from "../../design/motifs.js";
 import { h, remark } from "../../elements/dom.js";
+import { NAMES } from "../../grid/names.js";
 import { KINDS, KIND_GROUPS } from "../../grid/kinds.js";
 import { pencil, stamp } from "../../tools/tools.js";
 import { docked } from "../../widgets/dock.js";
@@ -57,19 +58,21 @@ export function create(studio) {
     studio.tool.value = tool;
   };
   /** @param {Kind} kind */
-  const stitch = ({ code, name, words, deed, group }) =>
-    h(
+  const stitch = ({ code, group }) => {
+    const [name, words, deed] = NAMES[code];
+    return h(
       "button",
       {
         class: `stitch bare rounded small ${group}`,
         id: `stitch-${code}`,
         title: `${name}: ${deed}`,
         "aria-label": `${name}, ${words}: ${deed}`,
-        onclick: () => choose(codesInk(`stitch-${code}`, words, code, `${name}: ${deed}`), pencil),
+        onclick: () => choose(stitchInk(code, NAMES[code]), pencil),
       },
       h("span", { class: "stitch-ground rounded" }, signElement(code, editing.symbols.value)),
       h("span", { class: "ellipsis" }, words),
     );
+  };
   /** @param {Motif} motif */
   const motif = ({ name, codes, note }) => {
     const ink = codesInk(`motif-${name.replace(/\W+/g, "-")}`, name, codes, note);
@@ -106,7 +109,7 @@ export function create(studio) {
       KIND_GROUPS.flatMap((group) => {
         const own = KINDS.filter((kind) => kind.group === group);
         const kinds = own.filter((kind) =>
-          usual ? isUsual(kind) : fits(`${kind.name} ${kind.words} ${kind.code} ${also(group)}`),
+          usual ? isUsual(kind) : fits(`${NAMES[kind.code].slice(0, 2).join(" ")} ${kind.code} ${also(group)}`),
         );
         const motifs = MOTIFS.filter(
           (each) => each.group === group && fits(`${each.name} ${each.note} ${also(group)}`),
