@@ -34,7 +34,7 @@ def group_of(stitch: StitchType) -> str:
 
 
 def deed_of(stitch: StitchType) -> str:
-    """What a stitch does to the cloth, in words."""
+    """The words for what a stitch does to the cloth."""
     if stitch.width > 1:
         return _crossing(stitch)
     (site,) = stitch.sites
