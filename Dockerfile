@@ -3,11 +3,13 @@ ARG BASE=debian:bookworm-slim@sha256:88200866dfff7ea7f5cbcb6ec7c8a701889efe6fe85
 
 FROM ${BASE} AS page
 RUN apt-get update \
- && apt-get install -y --no-install-recommends nodejs npm \
+ && apt-get install -y --no-install-recommends nodejs npm python3 \
  && rm -rf /var/lib/apt/lists/*
 WORKDIR /page
-COPY frontend .
-RUN npm ci --no-audit --no-fund && node build.mjs
+COPY knitcore knitcore
+COPY scripts/page_stitches.py scripts/
+COPY frontend frontend
+RUN PYTHONPATH=. python3 scripts/page_stitches.py && cd frontend && npm ci --no-audit --no-fund && node build.mjs
 
 FROM ${BASE} AS program
 ENV PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
@@ -20,7 +22,7 @@ RUN python3 -m venv /opt/knitcore \
  && sed '/^# --- installer/,$d' requirements.lock >product.txt \
  && /opt/knitcore/bin/pip install --require-hashes -r product.txt
 COPY . .
-COPY --from=page /page/dist frontend/dist
+COPY --from=page /page/frontend/dist frontend/dist
 RUN /opt/knitcore/bin/pip install --no-deps . \
  && find /opt/knitcore -type d '(' -name tests -o -path '*/site-packages/docs' ')' -prune -exec rm -rf {} + \
  && /opt/knitcore/bin/pip uninstall -y pip

@@ -36,9 +36,13 @@ frontend/node_modules/.installed: frontend/package.json frontend/package-lock.js
 	@touch $@
 
 # The page also runs as its sources: without Node, or without a way to its packages, it gets those.
+STITCHES := frontend/grid/stitches.js
 PAGE_SOURCES := $(shell find frontend \( -name node_modules -o -name dist -o -name tests -o -name types.d.ts \) \
 	-prune -o -type f -print)
-frontend/dist/index.html: $(PAGE_SOURCES)
+$(STITCHES): scripts/page_stitches.py knitcore/chart/stitch_kinds.py knitcore/chart/stitch_symbols.py
+	@PYTHONPATH=. $(PYTHON) scripts/page_stitches.py && touch $@
+
+frontend/dist/index.html: $(PAGE_SOURCES) $(STITCHES)
 	@( $(MAKE) --no-print-directory frontend/node_modules/.installed \
 		&& echo "Bundling the page …" && node frontend/build.mjs ) \
 		|| echo "The page could not be bundled (it needs Node 18 or newer): its sources are served instead."

@@ -78,6 +78,13 @@ await nextTask();
 
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);
+/** Rows that do not balance are seldom: what mends them comes with the first. */
+let mending = false;
+studio.balance.watch(async ({ length }) => {
+  if (mending || !length) return;
+  mending = true;
+  (await import("./panels/chart/balancebar.js")).balancebar(byId("chart-host"), studio);
+});
 messages(byId("messages"), byId("offline"), studio);
 tips();
 themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));

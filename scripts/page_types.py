@@ -1,4 +1,6 @@
-"""Write the page's types from the service's models (``make types``): ``frontend/types.d.ts``.
+"""Write what the page takes from Python (``make types``).
+
+That is ``frontend/types.d.ts`` from the service's models, and :mod:`scripts.page_stitches`.
 
 Request types have optional fields; the types of answers have every field (except problems, which
 the page also makes). TypeScript compares them with how the page uses them (``make lint``).
@@ -21,6 +23,7 @@ from app.service.problems import Problem
 from app.service.web.sessions import SignedIn
 from app.viewer.share import SharedViewRequest
 from knitcore.formats.designs.layout import DesignLayout
+from scripts import page_stitches
 
 FILE = Path(__file__).resolve().parent.parent / "frontend" / "types.d.ts"
 HEAD = "// Made from the service's models by scripts/page_types.py (`make types`)."
@@ -153,3 +156,4 @@ def _object(of: dict[str, Any]) -> str:
 
 if __name__ == "__main__":
     FILE.write_text(page_types(), encoding="utf-8")
+    page_stitches.write()

@@ -7,7 +7,7 @@
  * @import {IconName} from "../elements/icons.js"
  *
  * @typedef {"account" | "along" | "atlas" | "compare" | "conflict" | "designs" | "exports" | "fill" | "find" | "gallery"
- *   | "garments" | "help" | "import" | "palette" | "regions" | "repeats" | "resize" | "share" | "tour"
+ *   | "garments" | "help" | "import" | "palette" | "regions" | "repeats" | "resize" | "share" | "stitches" | "tour"
  *   | "versions" | "yarns"} PanelName that are loaded when they are opened
  * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: PanelName) => void,
  *   toggleTheme: () => void}} ActionContext

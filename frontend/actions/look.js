@@ -51,6 +51,7 @@ export const LOOK = [
     editing.round.value = !editing.round.value;
   }),
   ...[
+    { id: /** @type {const} */ ("stitches"), label: "Stitches: lace, cables, slips, tucks", key: "C" },
     { id: /** @type {const} */ ("regions"), label: "Regions", key: "Shift+A" },
     { id: /** @type {const} */ ("repeats"), label: "Linked repeats", key: "Shift+L" },
   ].map(({ id, label, key }) =>

@@ -22,9 +22,9 @@ const some = ({ selection }) => selection.value !== null;
 /** @param {Studio} studio */
 function copyPart({ document, editing, selection }) {
   if (!selection.value) return;
-  editing.clip = Clip.of(document.grid, selection.value);
+  editing.clip = Clip.of(document, selection.value);
   // For other programs, too, where the browser allows it.
-  void navigator.clipboard?.writeText(editing.clip.part.text).catch(() => {});
+  void navigator.clipboard?.writeText(editing.clip.text).catch(() => {});
 }
 
 /** @param {Studio} studio @param {string} label */
@@ -106,8 +106,9 @@ export const SELECTION = [
       Math.max(0, Math.min(column, grid.columns - clip.part.columns)),
     ];
     const under = grid.purl.slice();
-    document.set(clip.at(grid, place), "Paste");
-    editing.hold(new Floating(clip, place, under));
+    const others = document.others.entries;
+    document.set(clip.at(grid, place), "Paste", "stitches", clip.stitchesAt(grid, place));
+    editing.hold(new Floating(clip, place, under, others));
     studio.tool.value = move;
   }),
   action("clear", "Turn it into knits", ["Delete", "Backspace"], { icon: "trash", enabled: some }, ({ studio }) =>

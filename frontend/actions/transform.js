@@ -7,7 +7,8 @@
  */
 
 import { actionsOf } from "./action.js";
-import { changed } from "../design/floating.js";
+import { changed, changedStitches } from "../design/floating.js";
+import { inked } from "../design/ink.js";
 import { MAX_SIDE } from "../grid/grid.js";
 import { deleted, inserted, turned } from "../design/reshape.js";
 import { selectedCells } from "../design/selection.js";
@@ -36,7 +37,7 @@ const transform = (id, label, icon, key, how) =>
       (part) => part[how](),
       (mask) => (shape === "swapped" ? mask : mask[shape]()),
     );
-    document.set(cells, label);
+    document.set(cells, label, "stitches", changedStitches(document, selection.value, how));
   });
 
 const fillPart = change(
@@ -48,11 +49,12 @@ const fillPart = change(
     const { grid } = document;
     const cells = selectedCells(selection.value ?? grid.box, grid);
     const { columns } = grid;
-    document.set(
-      cells.map((i) => [i, ink.value.at([Math.floor(i / columns), i % columns], [0, 0])]),
-      "Fill",
-      ink.value.target,
-    );
+    /** @type {import("../grid/raster.js").Span[]} */
+    const spans = cells.map((i) => [Math.floor(i / columns), i % columns, (i % columns) + 1]);
+    document.begin(ink.value.target);
+    const [brush, put] = inked(grid, spans, ink.value, [0, 0], "none");
+    document.paint(brush, false, put);
+    document.commit("Fill");
   },
 );
 

@@ -23,8 +23,9 @@ const MIN_SYMBOL = 7;
  * @param {Box} box
  * @param {import("../state/editing.js").Symbols | "loops"} style
  * @param {boolean} back
+ * @param {import("../design/others.js").Others} others stitches with symbols of their own
  */
-export function drawSymbols(context, view, grid, layer, box, style, back) {
+export function drawSymbols(context, view, grid, layer, box, style, back, others) {
   const { cellWidth: w, cellHeight: h } = view;
   if (Math.min(w, h) < MIN_SYMBOL) return;
   const onLight = new Path2D();
@@ -37,6 +38,7 @@ export function drawSymbols(context, view, grid, layer, box, style, back) {
     for (let column = box.column0; column < box.column1; column++) {
       const purl = grid.purl[row * grid.columns + column] !== turned;
       if (!purl && (style === "dots" || style === "dashes")) continue;
+      if (others.size && others.start(row * grid.columns + column) !== undefined) continue;
       const x = view.x + column * w;
       const path = lightness(layer.pixelAt(grid, row, column)) > 0.5 ? onLight : onDark;
       if (style === "dots") {

@@ -26,6 +26,10 @@ const HOVER_MS = 24;
 /** @type {Cell} */
 const CORNER = [0, 0];
 
+/** @param {import("../design/ink.js").Ink} ink */
+const tooLarge = ({ name, repeat }) =>
+  `${name} has ${repeat?.columns} × ${repeat?.rows} stitches: this chart is too small for it.`;
+
 export class Painter {
   /** @type {Gesture | null} */ #gesture = null;
   #ink;
@@ -65,6 +69,11 @@ export class Painter {
     studio.tool.watch(({ mode }) => (canvas.dataset.mode = mode));
     studio.document.onTear((names) =>
       studio.tell(`Unlinked copies that are no longer whole: ${names.join(", ")}. Undo brings them back.`),
+    );
+    studio.document.onCut((cut) =>
+      studio.tell(
+        `${cut === 1 ? "A cable was" : `${cut} cables were`} cut and became knits and purls. Undo brings back what was.`,
+      ),
     );
     studio.document.onRefuse((names) =>
       studio.tell(`Locked: ${names.join(", ")}. Unlock it in the list of regions to paint there.`),
@@ -137,8 +146,8 @@ export class Painter {
     this.#placed = copy ? null : placedAt(chart, selection.value);
     if (this.#placed) return true;
     this.#floating = copy
-      ? Floating.lift(chart.grid, selection.value, true)
-      : (studio.editing.floating ?? Floating.lift(chart.grid, selection.value, false));
+      ? Floating.lift(chart, selection.value, true)
+      : (studio.editing.floating ?? Floating.lift(chart, selection.value, false));
     chart.begin();
     return true;
   }
@@ -189,8 +198,13 @@ export class Painter {
     const gesture = this.#gesture;
     const tool = studio.tool.value;
     if (!gesture) return;
+    if (tool.id === "stamp") {
+      const place = this.#ink.stampAt(gesture.current, studio.document.grid);
+      if (!place) return studio.tell(tooLarge(this.#ink));
+      gesture.current = place;
+    }
     const { document: chart } = studio;
-    const { grid, codes, outline } = chart;
+    const { grid, codes, outline, others } = chart;
     if (tool.mode === "once" && gesture.current !== gesture.start) return;
     if (tool.mode === "place") {
       view.preview.value = placedBox(studio.editing.repeat, grid, gesture.start, gesture.current);
@@ -199,18 +213,21 @@ export class Painter {
     if (tool.mode === "move") {
       if (this.#placed) view.preview.value = shifted(this.#placed.box, gesture, grid);
       else if (this.#floating) {
-        chart.paint(Brush.of(grid.purl.length, this.#floating.moved(grid, this.#target())), true);
+        const target = this.#target();
+        const brush = Brush.of(grid.purl.length, this.#floating.moved(grid, target));
+        chart.paint(brush, true, this.#floating.put(grid, target));
       }
       return;
     }
-    const spans = tool.spans(gesture, { grid, codes, outline, size: studio.size.value, ink: this.#ink });
+    const spans = tool.spans(gesture, { grid, codes, outline, others, size: studio.size.value, ink: this.#ink });
     const symmetry = studio.symmetry.value;
     if (tool.mode === "select") {
       studio.selection.value = combined(this.#before, spans, grid, this.#combination, symmetry);
       return;
     }
-    const origin = tool.origin?.(gesture) ?? CORNER;
-    chart.paint(inked(grid, spans, this.#ink, origin, symmetry), tool.mode === "shape");
+    const origin = tool.origin?.(gesture) ?? (this.#ink.isWide ? gesture.start : CORNER);
+    const [brush, put] = inked(grid, spans, this.#ink, origin, symmetry);
+    chart.paint(brush, tool.mode === "shape", put);
   }
 
   /** Where the lower left corner of what is in the hand is now. @returns {Cell} */
@@ -228,9 +245,9 @@ export class Painter {
     if (tool.value.mode === "place") this.#place();
     else if (this.#placed) this.#replace(this.#placed);
     else if (this.#floating) {
-      const { clip, under } = this.#floating;
+      const { clip, under, others } = this.#floating;
       const target = this.#target();
-      if (chart.commit(tool.value.label)) studio.editing.hold(new Floating(clip, target, under));
+      if (chart.commit(tool.value.label)) studio.editing.hold(new Floating(clip, target, under, others));
     } else chart.commit(studio.ink.value.target === "stitches" ? tool.value.label : studio.ink.value.name);
     this.#floating = null;
     this.#gesture = null;

@@ -16,6 +16,8 @@ import { OVERLAYS } from "../state/overlays.js";
 import { pixel, readPalette } from "../state/palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
 import { drawCrosses, sideOfCrossed } from "./crosses.js";
+import { GROUNDED, drawGrounds, drawSigns } from "./others.js";
+import { signsLoaded } from "./symbols.js";
 import { drawRectangles, roomInStitches, sideOfBlocks } from "./rectangles.js";
 import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
@@ -76,6 +78,8 @@ export class ChartView {
     const { look, back, round } = studio.editing;
     const { groups, block, crosses } = studio.seeing;
     for (const signal of [studio.rectangles, groups, block, crosses, round]) signal.listen(() => this.redraw());
+    signsLoaded.listen(() => this.redraw());
+    studio.balance.listen(() => this.redraw());
     look.listen(() => this.recolour());
     studio.editing.symbols.listen(() => this.recolour());
     back.watch((turned) => {
@@ -187,8 +191,11 @@ export class ChartView {
     if (!shown) return;
     const size = tool.sized ? studio.size.value : 1;
     const before = Math.floor((size - 1) / 2);
-    const stamp = tool.id === "stamp" ? studio.ink.value.repeat : null;
-    const [row0, column0] = [cell[0] - before, cell[1] - before];
+    const stamp = tool.id === "stamp" || studio.ink.value.isWide ? studio.ink.value.repeat : null;
+    const [row0, column0] = (tool.id === "stamp" && studio.ink.value.stampAt(cell, grid)) || [
+      cell[0] - before,
+      cell[1] - before,
+    ];
     const box = { row0, column0, row1: row0 + (stamp?.rows ?? size), column1: column0 + (stamp?.columns ?? size) };
     this.#around(this.#cursor, box);
   }
@@ -237,7 +244,7 @@ export class ChartView {
     if (dirty === "all") {
       context.fillStyle = palette.pane;
       context.fillRect(0, 0, viewport.width, viewport.height);
-      drawRulers(context, viewport, grid, palette, studio.editing.round.value);
+      drawRulers(context, viewport, grid, palette, studio.editing.round.value, studio.balance.value);
     }
     const seen = viewport.visible(grid);
     const box = dirty === "all" ? seen : intersection(dirty, seen);
@@ -278,11 +285,20 @@ export class ChartView {
       column1: Math.min(seen.column1, box.column1 + 1),
     };
     drawGrid(context, viewport, grid, around, palette);
+    const { others } = studio.document;
+    // Maps of numbers keep their colours.
+    const grounds = others.size > 0 && (look === "symbols" || GROUNDED.has((overlay ?? FALLBACK).id));
+    if (grounds) drawGrounds(context, viewport, studio.document, around, palette);
     if (overlay?.id === "segments" && look !== "symbols") {
       drawSegments(context, viewport, grid, around, palette);
     } else if (!studio.rectangles.value && look !== "colours") {
       const style = look === "loops" ? look : studio.editing.symbols.value;
-      drawSymbols(context, viewport, grid, this.#layer, around, style, viewport.mirrored);
+      drawSymbols(context, viewport, grid, this.#layer, around, style, viewport.mirrored, others);
+    }
+    if (others.size && !studio.rectangles.value && look !== "colours") {
+      const { symbols } = studio.editing;
+      const how = { layer: grounds ? null : this.#layer, palette, symbols: symbols.value, back: viewport.mirrored };
+      drawSigns(context, viewport, studio.document, around, how);
     }
     this.blockSide.value = sideOfBlocks(studio, viewport);
     this.room.value = roomInStitches(studio, viewport);

@@ -13,6 +13,8 @@
  */
 
 import { MAX_SIDE, isChartText } from "../grid/grid.js";
+import { readCodes } from "../grid/kinds.js";
+import { faultOf } from "./others.js";
 
 export const FORMAT = "knitcore-design";
 export const MAX_ITEMS = 200;
@@ -31,7 +33,7 @@ export class DesignError extends Error {
 
 /** @param {string} chart @param {Partial<Content>} [more] @returns {Content} */
 export function contentOf(chart, more = {}) {
-  return { chart, outline: null, regions: [], repeats: [], shelf: [], ...more };
+  return { chart, other_stitches: [], outline: null, regions: [], repeats: [], shelf: [], ...more };
 }
 
 /** A document from the content of a file. @param {unknown} value @returns {DesignDocument} @throws {DesignError} */
@@ -60,7 +62,13 @@ export function readDesign(value) {
 /** @param {Record<string, unknown>} value @returns {Content} @throws {DesignError} */
 export function readContent(value) {
   if (typeof value.chart !== "string") throw new DesignError("It holds no chart.");
-  const chart = value.chart.trim();
+  let chart = value.chart.trim();
+  let runs = value.other_stitches;
+  const read = isChartText(chart) ? null : readCodes(chart); // as the library may write it
+  if (read?.others.length && !items(runs, "other stitches").length) {
+    ({ chart } = read);
+    runs = read.others.map(([row, column, codes]) => ({ row, column, codes }));
+  }
   const {
     length: rows,
     0: { length: columns },
@@ -74,6 +82,7 @@ export function readContent(value) {
   if (!isChartText(chart)) throw new DesignError("Its chart is not rows of K and P of one length.");
   return {
     chart,
+    other_stitches: readOthers(runs, rows, columns),
     outline: readOutline(value.outline ?? null, rows, columns),
     regions: items(value.regions, "regions").map((item) => readRegion(item, rows, columns)),
     repeats: items(value.repeats, "repeats").map((item) => readRepeat(item, rows, columns)),
@@ -102,11 +111,20 @@ export function salvageContent(value) {
   };
   const bare = read({ chart: value.chart });
   if (!bare) return null;
-  for (const field of /** @type {const} */ (["outline", "regions", "repeats", "shelf"])) {
+  for (const field of /** @type {const} */ (["other_stitches", "outline", "regions", "repeats", "shelf"])) {
     const readable = read({ chart: value.chart, [field]: value[field] });
     if (readable) Object.assign(bare, { [field]: readable[field] });
   }
   return bare;
+}
+
+/** @param {unknown} value @param {number} rows @param {number} columns @returns {Content["other_stitches"]} */
+function readOthers(value, rows, columns) {
+  const runs = value ?? [];
+  if (!Array.isArray(runs) || !runs.every(isObject)) throw new DesignError("Its other stitches are not a list.");
+  const fault = faultOf(runs, rows, columns);
+  if (fault) throw new DesignError(fault, "Use stitches of the list, each inside the chart and in a place of its own.");
+  return runs.map(({ row, column, codes }) => ({ row: Number(row), column: Number(column), codes: String(codes) }));
 }
 
 /** @param {unknown} value @param {number} rows @param {number} columns */

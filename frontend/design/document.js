@@ -5,16 +5,21 @@
  *
  * @import {Content, ShelfItem} from "./design.js"
  * @import {Patch} from "./history.js"
+ * @import {OtherChange} from "./others.js"
  * @import {RegionLook} from "./regions.js"
  * @import {RepeatLook} from "./repeats.js"
  *
  * @typedef {"stitches" | "outline" | `region:${string}`} Target what a stroke paints
+ * @typedef {readonly (readonly [place: number, code: string])[]} Put stitches that are neither knit nor purl, by
+ *   the places of their left columns
  */
 
 import { flip, toRuns } from "../grid/bits.js";
 import { contentOf } from "./design.js";
 import { Grid } from "../grid/grid.js";
+import { kindOf } from "../grid/kinds.js";
 import { History } from "./history.js";
+import { Others, settleUnder, within, written } from "./others.js";
 import { Region, filling, uncovered } from "./regions.js";
 import { Repeat, laying, matching } from "./repeats.js";
 import { reshaped } from "./reshape.js";
@@ -26,7 +31,9 @@ export class ChartDocument extends ChartState {
   /** @type {Set<() => void>} */ #settled = new Set();
   /** @type {Set<(names: string[]) => void>} */ #refused = new Set();
   /** @type {Set<(names: string[]) => void>} */ #torn = new Set();
-  /** @type {{target: Target, layers: Map<string, Layer>, refused: number} | null} */ #stroke = null;
+  /** @type {Set<(cut: number) => void>} */ #cut = new Set();
+  /** `others` has the codes before the stroke where it changed them. @type {{target: Target, layers: Map<string, Layer>, others: Map<number, string | null>, refused: number} | null} */
+  #stroke = null;
 
   /** @param {Grid} grid @param {History} [history] */
   constructor(grid, history = new History()) {
@@ -67,6 +74,15 @@ export class ChartDocument extends ChartState {
     this.#torn.add(listener);
   }
 
+  /**
+   * When a change of the chart's size or shape cut cables; hears how many, which are knits and purls now.
+   *
+   * @param {(cut: number) => void} listener
+   */
+  onCut(listener) {
+    this.#cut.add(listener);
+  }
+
   // --- strokes --------------------------------------------------------------------------------
 
   get painting() {
@@ -81,7 +97,7 @@ export class ChartDocument extends ChartState {
   /** @param {Target} [target] */
   begin(target = "stitches") {
     this.cancel();
-    this.#stroke = { target, layers: new Map(), refused: -1 };
+    this.#stroke = { target, layers: new Map(), others: new Map(), refused: -1 };
   }
 
   /**
@@ -89,13 +105,14 @@ export class ChartDocument extends ChartState {
    *
    * @param {Brush} brush
    * @param {boolean} fresh whether the stroke is only these (a shape being dragged)
+   * @param {Put} [put] other stitches to put there; those under the brush go
    */
-  paint(brush, fresh) {
+  paint(brush, fresh, put = []) {
     const stroke = this.#stroke;
     if (!stroke) return;
     const { target } = stroke;
     if (target === "stitches") {
-      this.#lay("stitches", this.#linked(brush), fresh);
+      this.#layStitches(this.#linked(brush), fresh, put);
       return;
     }
     const { locked } = this.links;
@@ -107,7 +124,7 @@ export class ChartDocument extends ChartState {
     }
     this.#lay(target, allowed, fresh);
     if (own?.fill) {
-      this.#lay("stitches", this.#linked(filling(own, this, stroke.layers.get(target))), true);
+      this.#layStitches(this.#linked(filling(own, this, stroke.layers.get(target))), true);
     }
   }
 
@@ -119,7 +136,7 @@ export class ChartDocument extends ChartState {
     /** @type {Patch[]} */
     const patches = [];
     for (const [on, { runs }] of stroke.layers) if (runs.length) patches.push({ on, runs });
-    patches.push(...this.#followMotifs());
+    patches.push(...this.#exchanged(stroke.others), ...this.#followMotifs());
     this.#tellRefused(stroke.refused);
     return this.#keep(label, patches);
   }
@@ -129,6 +146,7 @@ export class ChartDocument extends ChartState {
     const stroke = this.#stroke;
     this.#stroke = null;
     for (const [on, layer] of stroke?.layers ?? []) this.refresh(on, layer.revert());
+    if (stroke) this.#takeBack(stroke.others);
   }
 
   /**
@@ -137,10 +155,11 @@ export class ChartDocument extends ChartState {
    * @param {Iterable<readonly [number, number]>} cells stitch and 1 for purl, 0 for knit
    * @param {string} label
    * @param {Target} [target]
+   * @param {Put} [put] other stitches to put there
    */
-  set(cells, label, target = "stitches") {
+  set(cells, label, target = "stitches", put = []) {
     this.begin(target);
-    this.paint(Brush.of(this.grid.purl.length, cells), false);
+    this.paint(Brush.of(this.grid.purl.length, cells), false, put);
     return this.commit(label);
   }
 
@@ -152,19 +171,30 @@ export class ChartDocument extends ChartState {
    *
    * @param {Grid} next
    * @param {string} label
+   * @param {Put} [put] its other stitches
    */
-  replace(next, label) {
+  replace(next, label, put = []) {
     this.cancel();
-    if (next.equals(this.grid)) return;
+    const others = Others.of(put);
+    const sides = [...new Set([...this.others.entries, ...put].map(([i]) => i))];
+    const changes = sides
+      .map((i) => /** @type {OtherChange} */ ([i, this.others.code(i), others.code(i)]))
+      .filter(([, before, after]) => before !== after);
+    if (next.equals(this.grid) && !changes.length) return;
     if (next.rows !== this.grid.rows || next.columns !== this.grid.columns) {
       const repeats = this.repeats.map((repeat) => repeat.with({ placements: [] }).written());
-      this.load({ ...contentOf(next.text), repeats, shelf: [...this.shelf] }, label);
+      const more = { other_stitches: written(others, next.columns), repeats, shelf: [...this.shelf] };
+      this.load(contentOf(next.text, more), label);
       return;
     }
     const differs = next.purl.map((p, i) => p ^ this.grid.purl[i]);
     const patches = this.exchange("repeats", matching(this.repeats, next));
     patches.push({ on: "stitches", runs: toRuns(differs) });
     this.flipRuns("stitches", toRuns(differs));
+    if (changes.length) {
+      this.apply({ others: changes }, "after");
+      patches.push({ others: changes });
+    }
     this.#keep(label, patches);
   }
 
@@ -195,12 +225,13 @@ export class ChartDocument extends ChartState {
   reshape(label, how) {
     this.cancel();
     const before = snapshotOf(this);
-    const after = reshaped(this, how);
+    const { after, cut } = reshaped(this, how);
     this.become(after);
     this.#keep(label, [{ before, after }]);
     const torn = before.repeats.filter(({ placements }, k) => after.repeats[k].placements.length < placements.length);
     const names = torn.map(({ name }) => name);
     if (names.length) for (const listener of this.#torn) listener(names);
+    if (cut) for (const listener of this.#cut) listener(cut);
   }
 
   /** @returns {string | undefined} what was undone */
@@ -332,17 +363,18 @@ export class ChartDocument extends ChartState {
    */
   #arrange(label, list, next, laid = null) {
     this.cancel();
+    const put = laid instanceof Repeat && this.others.size ? this.#carried(laid) : [];
     const patches = this.exchange(list, next);
     if (laid) {
       this.begin();
-      if (laid instanceof Repeat) this.#lay("stitches", this.#linked(laying(laid, this.grid), true), false);
+      if (laid instanceof Repeat) this.#layStitches(this.#linked(laying(laid, this.grid), true), false, put);
       else if (laid instanceof Brush) this.paint(laid, false);
       else if (laid.fill) this.paint(filling(laid, this), false);
       const stroke = this.#stroke;
       this.#stroke = null;
       const { runs } = stroke?.layers.get("stitches") ?? { runs: [] };
       if (runs.length) patches.push({ on: "stitches", runs });
-      patches.push(...this.#followMotifs());
+      patches.push(...this.#exchanged(stroke?.others ?? new Map()), ...this.#followMotifs());
       this.#tellRefused(stroke?.refused ?? -1);
     }
     this.tell({ box: this.grid.box, resized: false });
@@ -385,6 +417,109 @@ export class ChartDocument extends ChartState {
       flip(repeat.motif.purl, runs);
       return runs.length ? [{ on: `motif:${repeat.id}`, runs }] : [];
     });
+  }
+
+  /**
+   * Lay knits and purls, which take the place of other stitches, and other stitches on them.
+   *
+   * @param {Brush} brush
+   * @param {boolean} fresh
+   * @param {Put} [put]
+   */
+  #layStitches(brush, fresh, put = []) {
+    const stroke = this.#stroke;
+    const { others, grid } = this;
+    if (!stroke) return;
+    if (others.size || put.length || stroke.others.size) {
+      if (fresh) {
+        this.refresh("stitches", stroke.layers.get("stitches")?.revert() ?? null);
+        this.#takeBack(stroke.others);
+        fresh = false;
+      }
+      const before = stroke.others.size;
+      for (const i of brush.touched) this.#putOther(others.start(i), null);
+      const laid = this.#allowed(put);
+      for (const [i, code] of laid) {
+        for (let k = 0; k < kindOf(code).width; k++) this.#putOther(others.start(i + k), null);
+        this.#putOther(i, code);
+      }
+      settleUnder(brush, grid.purl, grid.columns, others, laid);
+      if (laid.length || stroke.others.size > before) this.tellOthers([...stroke.others.keys()]);
+    }
+    this.#lay("stitches", brush, fresh);
+  }
+
+  /** @param {number | undefined} i @param {string | null} code */
+  #putOther(i, code) {
+    const { others } = this;
+    if (i === undefined || others.code(i) === code) return;
+    const kept = /** @type {Map<number, string | null>} */ (this.#stroke?.others);
+    if (!kept.has(i)) kept.set(i, others.code(i));
+    others.put(i, code);
+  }
+
+  /** Other stitches that may be put, with all that are linked to them. @param {Put} put @returns {Put} */
+  #allowed(put) {
+    const { links, outline, grid } = this;
+    /** @type {Map<number, string>} */
+    const allowed = new Map();
+    for (const [start, code] of put) {
+      const { width } = kindOf(code);
+      const group = links.group[start];
+      for (const i of group ? links.members(group) : [start]) {
+        const cells = Array.from({ length: width }, (_, k) => i + k);
+        const fits = (i % grid.columns) + width <= grid.columns && cells.every((cell) => outline[cell]);
+        if (cells.some((cell) => links.locked[cell])) /** @type {{refused: number}} */ (this.#stroke).refused = i;
+        else if (fits) allowed.set(i, code);
+      }
+    }
+    return [...allowed].sort(([a], [b]) => a - b);
+  }
+
+  /** @param {Map<number, string | null>} before */
+  #takeBack(before) {
+    for (const i of before.keys()) this.others.put(i, null);
+    for (const [i, code] of before) this.others.put(i, code);
+    this.tellOthers([...before.keys()]);
+    before.clear();
+  }
+
+  /** @param {Map<number, string | null>} before @returns {Patch[]} */
+  #exchanged(before) {
+    const changes = [...before]
+      .map(([i, code]) => /** @type {OtherChange} */ ([i, code, this.others.code(i)]))
+      .filter(([, old, now]) => old !== now);
+    return changes.length ? [{ others: changes }] : [];
+  }
+
+  /**
+   * The other stitches of a repeat's copies: a motif has knits and purls alone, and what else it has is seen in
+   * its first copy.
+   *
+   * @param {Repeat} repeat as it will be
+   * @returns {Put}
+   */
+  #carried(repeat) {
+    const old = this.repeat(repeat.id);
+    const [first] = old?.placements.length ? old.placements : repeat.placements;
+    if (!first || (old && !old.motif.equals(repeat.motif))) return [];
+    const { motif } = repeat;
+    const box = { row0: first.row, column0: first.column, row1: first.row, column1: first.column };
+    box.row1 += Math.min(motif.rows, first.rows);
+    box.column1 += Math.min(motif.columns, first.columns);
+    const wide = box.column1 - box.column0;
+    const { entries } = within(this.others, this.grid.columns, box);
+    return repeat.placements.flatMap((place) =>
+      entries.flatMap(([k, code]) => {
+        const put = [];
+        for (let row = Math.floor(k / wide); row < place.rows; row += motif.rows) {
+          for (let column = k % wide; column + kindOf(code).width <= place.columns; column += motif.columns) {
+            put.push(/** @type {const} */ ([this.grid.index(place.row + row, place.column + column), code]));
+          }
+        }
+        return put;
+      }),
+    );
   }
 
   /** @param {string} on @param {Brush} brush @param {boolean} fresh */

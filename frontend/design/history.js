@@ -1,8 +1,9 @@
 /**
  * Undo and redo as deltas. Bitmaps (stitches, outline, a region's cells, a motif) are flipped, and
  * flipping again takes it back; lists are exchanged, naming by id what stayed; only a change of size
- * keeps both charts.
+ * keeps both charts. Of stitches that are neither knit nor purl, it has the code before and after.
  *
+ * @import {OtherChange} from "./others.js"
  * @import {RegionItem, RepeatItem, ShelfItem} from "./design.js"
  * @import {Snapshot} from "./snapshot.js"
  *
@@ -11,7 +12,8 @@
  * @typedef {RegionItem | RepeatItem | ShelfItem | string} Entry a string is the id of what stays
  * @typedef {{list: "regions" | "repeats" | "shelf", before: Entry[], after: Entry[]}} ListPatch
  * @typedef {{before: Snapshot, after: Snapshot}} WholePatch
- * @typedef {FlipPatch | ListPatch | WholePatch} Patch
+ * @typedef {{others: OtherChange[]}} OthersPatch
+ * @typedef {FlipPatch | ListPatch | WholePatch | OthersPatch} Patch
  * @typedef {{label: string, patches: Patch[]}} Step
  */
 

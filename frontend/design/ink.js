@@ -2,7 +2,7 @@
  * What a tool paints with: knit, purl, the opposite of the stitch first touched, a repeat (so that
  * one can paint with a fabric), "no stitch", or a region.
  *
- * @import {Target} from "./document.js"
+ * @import {Put, Target} from "./document.js"
  * @import {Grid} from "../grid/grid.js"
  * @import {Cell, Span} from "../grid/raster.js"
  * @typedef {"none" | "across" | "up" | "both"} Symmetry "across": the left half mirrored to the right
@@ -10,6 +10,7 @@
 
 import { besides } from "../core/pointing.js";
 import { Grid as ChartGrid } from "../grid/grid.js";
+import { IMAGES, kindOf, readCodes } from "../grid/kinds.js";
 import { Brush } from "../grid/stroke.js";
 
 export class Ink {
@@ -19,13 +20,33 @@ export class Ink {
    * @param {Grid | null} repeat null: the opposite of the stitch first touched
    * @param {string} [note]
    * @param {Target} [target] what it changes
+   * @param {readonly [row: number, column: number, code: string][]} [others] its stitches that are neither knit nor purl
    */
-  constructor(id, name, repeat, note = "", target = "stitches") {
+  constructor(id, name, repeat, note = "", target = "stitches", others = []) {
     this.id = id;
     this.name = name;
     this.repeat = repeat;
     this.note = note;
     this.target = target;
+    this.others = others;
+  }
+
+  /** Whether it is one stitch over several columns: it begins where the pointer is pressed. */
+  get isWide() {
+    return this.others.length === 1 && this.repeat?.rows === 1 && this.repeat.columns > 1;
+  }
+
+  /**
+   * Where its stamp is put for a pointer: one of lace or cables is moved into the chart, so that its rows stay whole.
+   *
+   * @param {Cell} cell
+   * @param {Grid} grid
+   * @returns {Cell | null} null where the chart is too small for it
+   */
+  stampAt([row, column], grid) {
+    if (!this.repeat || !this.others.length) return [row, column];
+    const [high, wide] = [grid.rows - this.repeat.rows, grid.columns - this.repeat.columns];
+    return high < 0 || wide < 0 ? null : [Math.min(row, high), Math.min(column, wide)];
   }
 
   /** The stitch that this ink puts at a place. @param {Cell} cell @param {Cell} origin where the repeat begins */
@@ -41,9 +62,10 @@ export class Ink {
     return this.repeat ? this : first ? KNIT : PURL;
   }
 
-  /** The ink of the right mouse button. */
+  /** The ink of the right mouse button; other stitches it takes away. */
   opposite() {
     if (!this.repeat) return this;
+    if (this.others.length) return new Ink(`${this.id}-away`, this.name, this.repeat, this.note, this.target);
     return new Ink(`${this.id}-swapped`, this.name, this.repeat.swapped(), this.note, this.target);
   }
 }
@@ -67,15 +89,24 @@ export function regionInk({ id, name }) {
   return new Ink(`region-${id}`, name, stitch(1), `Add stitches to ${name}`, `region:${id}`);
 }
 
+/** An ink of any stitches. @param {string} id @param {string} name @param {string} codes such as "KO/;KKK" @param {string} [note] */
+export function codesInk(id, name, codes, note) {
+  const { chart, others } = /** @type {NonNullable<ReturnType<typeof readCodes>>} */ (readCodes(codes));
+  return new Ink(id, name, ChartGrid.fromText(chart), note, "stitches", others);
+}
+
+/** An ink of one stitch. @param {string} code @param {[name: string, words: string, deed: string]} words */
+export const stitchInk = (code, [name, words, deed]) => codesInk(`stitch-${code}`, words, code, `${name}: ${deed}`);
+
 /**
- * Stitches to set: the ink at each cell, and its mirror images.
+ * Stitches to set: the ink at each cell, and its mirror images; and those of them that are neither knit nor purl.
  *
  * @param {Grid} grid
  * @param {Span[]} spans may lie outside
  * @param {Ink} ink with a repeat
  * @param {Cell} origin
  * @param {Symmetry} symmetry
- * @returns {Brush}
+ * @returns {[Brush, Put]}
  */
 export function inked(grid, spans, ink, origin, symmetry) {
   const { rows, columns } = grid;
@@ -100,7 +131,45 @@ export function inked(grid, spans, ink, origin, symmetry) {
       if (across && up) brush.set(mirrored + other, value);
     }
   }
-  return brush;
+  return [brush, ink.others.length ? otherStitches(grid, brush, ink, origin, { across, up }) : []];
+}
+
+/**
+ * The other stitches that an ink puts down; its wide ones add their columns to the brush.
+ *
+ * @param {Grid} grid
+ * @param {Brush} brush of the places that are painted
+ * @param {Ink} ink
+ * @param {Cell} origin
+ * @param {{across: boolean, up: boolean}} symmetry
+ * @returns {Put}
+ */
+function otherStitches({ rows, columns, purl }, brush, { repeat, others }, origin, { across, up }) {
+  const { rows: high, columns: wide } = /** @type {Grid} */ (repeat);
+  const codes = new Map(others.map(([row, column, code]) => [row * wide + column, code]));
+  /** @type {Map<number, string>} */
+  const put = new Map();
+  /** @param {number} row @param {number} column @param {string} code */
+  const add = (row, column, code) => {
+    const { width } = kindOf(code);
+    if (column < 0 || column + width > columns) return;
+    put.set(row * columns + column, code);
+    for (let i = row * columns + column, k = 0; k < width; k++)
+      brush.set(i + k, brush.has(i + k) ? brush.values[i + k] : purl[i + k]);
+  };
+  for (const i of brush.touched.slice()) {
+    const [row, column] = [Math.floor(i / columns), i % columns];
+    const code = codes.get(modulo(row - origin[0], high) * wide + modulo(column - origin[1], wide));
+    // what symmetry painted is put down with its origin
+    const mirror = (across && 2 * column >= columns && columns > 1) || (up && 2 * row >= rows && rows > 1);
+    if (code === undefined || mirror) continue;
+    const other = columns - column - kindOf(code).width;
+    add(row, column, code);
+    if (across) add(row, other, IMAGES.mirrored(code));
+    if (up) add(rows - 1 - row, column, code);
+    if (across && up) add(rows - 1 - row, other, IMAGES.mirrored(code));
+  }
+  return [...put];
 }
 
 /** @param {number} a @param {number} n */

@@ -12,11 +12,15 @@
  * @property {Int32Array} [like] for each new stitch the old one whose regions and outline it takes
  * @property {boolean} [grow] whether repeats that spanned the chart span the new one, if they fit
  * @property {{change: (motif: Grid) => Grid, swapped: boolean}} [motif] what happens to motifs
+ * @property {(code: string) => string} [image] what other stitches than knits and purls become
  */
 
 import { Grid } from "../grid/grid.js";
+import { IMAGES, kindOf } from "../grid/kinds.js";
+import { Others, settleUnder } from "./others.js";
 import { matching } from "./repeats.js";
 import { snapshotOf } from "./snapshot.js";
+import { Brush } from "../grid/stroke.js";
 
 /**
  * @param {Grid} grid
@@ -54,6 +58,7 @@ export function turned(grid, how) {
       across ? columns - 1 - column : column,
     ]),
     motif: { change: (motif) => motif[how](), swapped: how === "turnedOver" || how === "swapped" },
+    image: IMAGES[how],
   };
 }
 
@@ -124,14 +129,20 @@ export function deleted(grid, axis, from, to) {
  *
  * @param {State} chart
  * @param {Reshape} how
- * @returns {Snapshot}
+ * @returns {{after: Snapshot, cut: number}} and how many cables are cut, which become knits and purls
  */
-export function reshaped({ grid: old, outline, regions, repeats }, how) {
+export function reshaped({ grid: old, outline, regions, repeats, others: oldOthers }, how) {
   const { rows, columns, source, like = source, motif } = how;
   /** @param {Uint8Array} bitmap @param {Int32Array} from @param {number} other */
   const moved = (bitmap, from, other) => Uint8Array.from(from, (i) => (i < 0 ? other : bitmap[i]));
   const stitches = moved(old.purl, source, 0);
   const grid = new Grid(rows, columns, motif?.swapped ? stitches.map((p) => 1 - p) : stitches);
+  const { others, cut } = movedStitches(oldOthers, old, how);
+  if (others.size) {
+    const under = new Brush(grid.purl.length);
+    settleUnder(under, grid.purl, columns, others, others.entries);
+    for (const i of under.touched) grid.purl[i] = under.values[i];
+  }
   const carried = carrier(old, how);
   const turned = repeats.map((repeat) => {
     const size = { rows: repeat.motif.rows + repeat.edgeRows, columns: repeat.motif.columns + repeat.edgeColumns };
@@ -145,12 +156,46 @@ export function reshaped({ grid: old, outline, regions, repeats }, how) {
       }),
     });
   });
-  return snapshotOf({
+  const after = snapshotOf({
     grid,
+    others,
     outline: moved(outline, like, 1),
     regions: regions.map((region) => region.withCells(moved(region.cells, like, 0))),
     repeats: matching(turned, grid),
   });
+  return { after, cut };
+}
+
+/** For each old stitch its new place; -1 is none. @param {Grid} old @param {Reshape} how */
+function targets(old, { source }) {
+  const target = new Int32Array(old.purl.length).fill(-1);
+  source.forEach((i, k) => {
+    if (i >= 0) target[i] = k;
+  });
+  return target;
+}
+
+/**
+ * Stitches that are neither knit nor purl, at their new places.
+ *
+ * @param {Others} old
+ * @param {Grid} grid
+ * @param {Reshape} how
+ */
+function movedStitches(old, grid, how) {
+  const others = new Others();
+  let cut = 0;
+  if (!old.size) return { others, cut };
+  const target = targets(grid, how);
+  for (const [i, code] of old.entries) {
+    const { width } = kindOf(code);
+    const places = Array.from({ length: width }, (_, k) => target[i + k]);
+    const [first, last] = [Math.min(...places), Math.max(...places)];
+    const there = places.filter((place) => place >= 0).length;
+    if (there === width && last - first === width - 1) others.put(first, how.image?.(code) ?? code);
+    else if (there) cut++;
+  }
+  return { others, cut };
 }
 
 /**
@@ -160,11 +205,9 @@ export function reshaped({ grid: old, outline, regions, repeats }, how) {
  * @param {Reshape} how
  * @returns {(place: PlacementItem) => PlacementItem | null}
  */
-function carrier(old, { source, columns }) {
-  const target = new Int32Array(old.purl.length).fill(-1);
-  source.forEach((i, k) => {
-    if (i >= 0) target[i] = k;
-  });
+function carrier(old, how) {
+  const target = targets(old, how);
+  const { columns } = how;
   return ({ row, column, rows: high, columns: wide }) => {
     const ends = [target[old.index(row, column)], target[old.index(row + high - 1, column + wide - 1)]];
     if (Math.min(...ends) < 0) return null;

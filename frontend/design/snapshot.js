@@ -3,20 +3,25 @@
  * document has them.
  *
  * @import {Content, RegionItem, RepeatItem, ShelfItem} from "./design.js"
+ * @import {Others} from "./others.js"
  * @import {Region} from "./regions.js"
  * @import {Repeat} from "./repeats.js"
  *
  * @typedef {{rows: number, columns: number, stitches: string, outline: string | null,
- *   regions: RegionItem[], repeats: RepeatItem[], shelf?: ShelfItem[]}} Snapshot
- * @typedef {{grid: Grid, outline: Uint8Array, regions: readonly Region[], repeats: readonly Repeat[]}} State
+ *   regions: RegionItem[], repeats: RepeatItem[], shelf?: ShelfItem[], others?: [number, string][]}} Snapshot
+ *   `others` are places and codes of stitches that are neither knit nor purl, if there are any
+ * @typedef {{grid: Grid, outline: Uint8Array, regions: readonly Region[], repeats: readonly Repeat[],
+ *   others: Others}} State
  */
 
 import { pack } from "../grid/bits.js";
 import { Grid } from "../grid/grid.js";
+import { entriesOf } from "./others.js";
 
 /** @param {State} state @returns {Snapshot} */
-export function snapshotOf({ grid: { rows, columns, purl }, outline, regions, repeats }) {
+export function snapshotOf({ grid: { rows, columns, purl }, outline, regions, repeats, others }) {
   return {
+    ...(others.size && { others: others.entries }),
     rows,
     columns,
     stitches: pack(purl),
@@ -27,10 +32,11 @@ export function snapshotOf({ grid: { rows, columns, purl }, outline, regions, re
 }
 
 /** @param {Content} content @returns {Snapshot} */
-export function snapshotFrom({ chart, outline, regions, repeats, shelf }) {
+export function snapshotFrom({ chart, other_stitches: runs = [], outline, regions, repeats, shelf }) {
   const { rows, columns, purl } = Grid.fromText(chart);
   const marks = outline?.split("\n").toReversed().join("");
   return {
+    ...(runs.length && { others: entriesOf(runs, columns) }),
     rows,
     columns,
     stitches: pack(purl),

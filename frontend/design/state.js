@@ -12,6 +12,7 @@
 
 import { boxOfRuns, flip, unpack } from "../grid/bits.js";
 import { Grid } from "../grid/grid.js";
+import { Others, codesText, written } from "./others.js";
 import { Region } from "./regions.js";
 import { Links, Repeat } from "./repeats.js";
 import { surroundings, updateSurroundings } from "../grid/segments.js";
@@ -19,6 +20,8 @@ import { outlineText } from "./snapshot.js";
 
 export class ChartState {
   /** 1 where there is a stitch. @type {Uint8Array} */ outline;
+  /** Stitches that are neither knit nor purl. */
+  others = new Others();
   /** Whether any stitch is absent. */
   shaped = false;
   /** @type {readonly Region[]} */ regions = [];
@@ -63,10 +66,16 @@ export class ChartState {
     return this.shaped ? outlineText(this.outline, this.grid.columns) : null;
   }
 
+  /** Its stitches in lines: K and P, or codes where there are others; the top row first. */
+  get text() {
+    return this.others.size ? codesText(this.grid, this.others) : this.grid.text;
+  }
+
   /** @returns {Content} */
   get content() {
     return {
       chart: this.grid.text,
+      other_stitches: written(this.others, this.grid.columns),
       outline: this.outlineText,
       regions: this.regions.map((region) => this.#item(region)),
       repeats: this.repeats.map((repeat) => repeat.written()),
@@ -169,7 +178,11 @@ export class ChartState {
   /** @param {Patch} patch @param {"before" | "after"} side */
   apply(patch, side) {
     if ("on" in patch) this.flipRuns(patch.on, patch.runs);
-    else if (!("list" in patch)) this.become(patch[side]);
+    else if ("others" in patch) {
+      for (const [i] of patch.others) this.others.put(i, null);
+      for (const [i, before, after] of patch.others) this.others.put(i, side === "before" ? before : after);
+      this.tellOthers(patch.others.map(([i]) => i));
+    } else if (!("list" in patch)) this.become(patch[side]);
     else {
       const { rows, columns } = this.grid;
       const entries = /** @type {any[]} */ (patch[side]);
@@ -186,9 +199,10 @@ export class ChartState {
   }
 
   /** @param {Snapshot} state */
-  become({ rows, columns, stitches, outline, regions, repeats, shelf }) {
+  become({ rows, columns, stitches, outline, regions, repeats, shelf, others }) {
     this.grid = new Grid(rows, columns, unpack(stitches, rows * columns));
     this.outline = outline ? unpack(outline, rows * columns) : new Uint8Array(rows * columns).fill(1);
+    this.others = Others.of(others ?? []);
     this.shaped = outline !== null;
     this.regions = regions.map((item) => Region.read(item, rows, columns));
     this.repeats = repeats.map(Repeat.read);
@@ -196,6 +210,15 @@ export class ChartState {
     this.#links = null;
     this.codes = surroundings(this.grid, this.shaped ? this.outline : null);
     this.tell({ box: this.grid.box, resized: true });
+  }
+
+  /** Other stitches at some left columns changed. @param {readonly number[]} starts */
+  tellOthers(starts) {
+    if (!starts.length) return;
+    const { columns, box } = this.grid;
+    const rows = starts.map((i) => Math.floor(i / columns));
+    const row0 = rows.reduce((least, row) => Math.min(least, row));
+    this.tell({ box: { ...box, row0, row1: 1 + rows.reduce((most, row) => Math.max(most, row)) }, resized: false });
   }
 
   /** @param {Change} change */

@@ -33,6 +33,11 @@ export class Brush {
     this.values[i] = value;
   }
 
+  /** Whether it changes a stitch. @param {number} i */
+  has(i) {
+    return this.values[i] !== UNTOUCHED;
+  }
+
   clear() {
     for (let k = 0; k < this.count; k++) this.values[this.#list[k]] = UNTOUCHED;
     this.count = 0;

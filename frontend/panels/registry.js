@@ -28,6 +28,7 @@ const PANELS = {
   repeats: () => import("./parts/repeats.js"),
   resize: () => import("./dialogs/resize.js"),
   share: () => import("./designs/share.js"),
+  stitches: () => import("./stitches/stitches.js"),
   tour: () => import("./tour.js"),
   versions: () => import("./designs/versions.js"),
   yarns: () => import("./dialogs/yarns.js"),

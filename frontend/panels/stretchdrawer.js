@@ -12,6 +12,7 @@ import { figure, percent, percentRange, spread } from "../core/format.js";
 import { lockUpInWords } from "../core/striptest.js";
 import { h } from "../elements/dom.js";
 import { REST } from "../state/studio.js";
+import { plainWords } from "../services/stitches.js";
 import { icon } from "../elements/icons.js";
 import { iconButton } from "../widgets/buttons.js";
 import { numberField, segmented, selectField } from "../widgets/fields.js";
@@ -227,6 +228,8 @@ export function stretchdrawer(host, studio, stretcher) {
       note.append(h("span", {}, warned ?? lockUp, rest));
     } else if (tooLarge()) note.append(icon("info"), tooLarge());
     else note.append("Pull the chart along its rows or columns and see where it gives.");
+    const plain = plainWords(studio, "The test");
+    if (plain && !problem) note.append(h("span", {}, ` ${plain}`));
     run.disabled = !busy && tooLarge() !== "";
     host.classList.toggle("busy", busy);
     if (busy) folded(false);
@@ -234,6 +237,12 @@ export function stretchdrawer(host, studio, stretcher) {
   const waiting = () => stretcher.progress.value === null;
   const tooLarge = () => studio.tooLarge("stretch", "a stretch test");
   studio.document.onChange(({ resized }) => resized && show());
+  let plainSaid = false;
+  studio.document.onSettle(() => {
+    const others = studio.document.others.size > 0;
+    if (others !== plainSaid) show();
+    plainSaid = others;
+  });
   studio.largest.listen(show);
   studio.stretch.watch(show);
   studio.step.listen(showStep);

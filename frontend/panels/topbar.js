@@ -214,7 +214,7 @@ function exportMenu(studio, context) {
       id: "export-copy",
       content: "Copy the text",
       perform: () =>
-        void navigator.clipboard.writeText(studio.document.grid.text).then(
+        void navigator.clipboard.writeText(studio.document.text).then(
           () => studio.tell("The chart's text is on the clipboard."),
           () => studio.tell("The browser does not allow copying; export as a file instead."),
         ),

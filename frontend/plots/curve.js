@@ -13,7 +13,8 @@ import { Belonging, clothOf } from "../services/belonging.js";
 import { Latest } from "../services/latest.js";
 import { paced } from "../core/paced.js";
 import { FABRICS } from "../grid/segments.js";
-import { clothIn, scopeOf } from "../services/scope.js";
+import { scopeOf } from "../services/scope.js";
+import { anyClothIn } from "../services/stitches.js";
 import { themedReader } from "../state/palette.js";
 import { drawPlot, loadPlotly, movePoint } from "./plotly.js";
 
@@ -57,7 +58,7 @@ export function curvePlot(host, studio) {
     if (host.hidden) return;
     latest.run(
       async (signal) => {
-        const body = { ...clothIn(studio, scopeOf(studio)), direction: studio.seeing.pull.value };
+        const body = { ...anyClothIn(studio, scopeOf(studio)), direction: studio.seeing.pull.value };
         const key = JSON.stringify(body);
         const { basis } = belonging;
         if (answer?.key !== key) {

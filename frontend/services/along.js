@@ -33,11 +33,12 @@ export function waysOf(machines, chosen) {
 
 /** @param {Pick<Studio, "document" | "machine" | "materialId">} studio @param {string} way @returns {KnitAlongRequest} */
 export function alongRequest({ document: chart, machine: { value: chosen }, materialId }, way) {
-  const { chart: text, outline, regions, repeats, shelf } = chart.content;
+  const { chart: plain, other_stitches: others, outline, regions, repeats, shelf } = chart.content;
+  const parts = { chart: others?.length ? chart.text : plain, outline, regions, repeats, shelf };
   const byHand = way === "flat" || way === "round";
   const machine = byHand ? null : ownMachine(chosen)?.identifier === way ? chosen : way;
   const construction = way === "round" ? "round" : "flat";
-  return { chart: text, outline, regions, repeats, shelf, machine, construction, material: materialId.value };
+  return { ...parts, machine, construction, material: materialId.value };
 }
 
 /**

@@ -11,7 +11,8 @@
 
 import { paced } from "../core/paced.js";
 import { Signal } from "../core/signal.js";
-import { clothIn, scopeOf } from "./scope.js";
+import { scopeOf } from "./scope.js";
+import { anyClothIn } from "./stitches.js";
 
 /** What to say of a result once its basis is another. @type {Record<string, string>} */
 const CHANGED = {
@@ -93,7 +94,7 @@ export class Belonging {
 /** What the numbers of a part of the chart depend on. @param {Studio} studio */
 export function clothOf(studio) {
   const scope = scopeOf(studio);
-  const { chart, material, gauge } = clothIn(studio, scope);
+  const { chart, material, gauge } = anyClothIn(studio, scope);
   return { part: [scope.kind, scope.title, placeOf(studio)], chart, yarn: material, gauge };
 }
 

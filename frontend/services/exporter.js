@@ -15,7 +15,7 @@ export function exportProject(studio) {
 
 /** @param {Studio} studio */
 export function exportText(studio) {
-  const blob = new Blob([`${studio.document.grid.text}\n`], { type: "text/plain" });
+  const blob = new Blob([`${studio.document.text}\n`], { type: "text/plain" });
   download(`${fileName(studio)}.txt`, blob);
 }
 

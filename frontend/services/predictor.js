@@ -7,7 +7,8 @@
 import { api } from "../api.js";
 import { predictionOf } from "./belonging.js";
 import { Latest } from "./latest.js";
-import { clothIn, scopeOf } from "./scope.js";
+import { scopeOf } from "./scope.js";
+import { anyClothIn, remarksOn } from "./stitches.js";
 
 const DELAY_MS = 80;
 
@@ -22,7 +23,10 @@ export function startPredictor(studio) {
       async (signal) => {
         const scope = scopeOf(studio);
         const { basis } = belonging;
-        const body = { ...clothIn(studio, scope), ...scope.shaped, hand: true };
+        const { problem } = remarksOn(studio, scope);
+        if (problem)
+          return void (prediction.value = { value: null, busy: false, problem, basis: {}, scope: scope.kind });
+        const body = { ...anyClothIn(studio, scope), ...scope.shaped, hand: true };
         const value = await api.run("predict", body, signal);
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, basis, scope: scope.kind };

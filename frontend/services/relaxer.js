@@ -23,7 +23,7 @@ export function startRelaxer(studio) {
     relaxing.value = false;
     const { value, busy } = prediction.value;
     // A stretch test that somebody waits for comes first.
-    const chart = busy || stretch.value.busy ? null : value?.worth_relaxing;
+    const chart = busy || stretch.value.busy || value?.other_stitches ? null : value?.worth_relaxing;
     const material = studio.materialId.value;
     if (!chart || refused.has(`${material}\n${chart}`)) return;
     const cloth = { chart: scopeOf(studio).grid.text, material };

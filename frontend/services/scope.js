@@ -1,7 +1,7 @@
 /**
  * What the numbers are of: the whole chart, the selection, or a region.
  *
- * @import {Grid} from "../grid/grid.js"
+ * @import {Box, Grid} from "../grid/grid.js"
  * @import {ChartState} from "../design/state.js"
  * @import {Selection} from "../design/selection.js"
  * @import {GirthAt} from "../state/seeing.js"
@@ -13,6 +13,7 @@
  * @property {string} title
  * @property {string} size in words
  * @property {Grid} grid the stitches whose moduli are shown, as a chart of their own
+ * @property {Box | null} box where these lie in the chart; null for the repeat that fills a region
  * @property {{chart: string, outline: string} | null} shaped the whole of a piece with an outline
  * @property {{grid: Grid, mask: Uint8Array | null}} counted the stitches whose segments are counted
  * @property {string} note how the grid represents stitches that do not form a rectangle; "" if they do
@@ -51,11 +52,20 @@ export function scopeIn(chart, id) {
     const inside = chart.shaped ? largestRectangle(chart.outline, grid.columns) : null;
     const shaped = inside && { chart: grid.text, outline: outlineText(chart.outline, grid.columns) };
     const part = inside ? grid.region(inside) : grid;
-    return { kind: "chart", title: "Whole chart", size, grid: part, shaped, counted, note: "" };
+    return {
+      kind: "chart",
+      title: "Whole chart",
+      size,
+      grid: part,
+      box: inside ?? grid.box,
+      shaped,
+      counted,
+      note: "",
+    };
   }
   const around = /** @type {Selection} */ (selectionOf(region.cells, grid));
   const part = partOf(around, grid, "region", region.name);
-  return region.fill ? { ...part, grid: region.fill, note: "Of the repeat that fills it." } : part;
+  return region.fill ? { ...part, grid: region.fill, box: null, note: "Of the repeat that fills it." } : part;
 }
 
 /**
@@ -122,11 +132,17 @@ function partOf(box, chart, kind, title) {
   const counted = { grid, mask };
   const inside = mask && largestRectangle(mask, grid.columns);
   const common = { kind, title, shaped: null, counted };
-  if (!mask || !inside) return { ...common, size: `${grid.columns} × ${grid.rows}`, grid, note: "" };
+  if (!mask || !inside) return { ...common, size: `${grid.columns} × ${grid.rows}`, grid, box, note: "" };
   const part = grid.region(inside);
+  const place = {
+    row0: box.row0 + inside.row0,
+    column0: box.column0 + inside.column0,
+    row1: box.row0 + inside.row1,
+    column1: box.column0 + inside.column1,
+  };
   const stitches = mask.reduce((sum, bit) => sum + bit, 0);
   const note = `Moduli of the largest rectangle inside it, ${part.columns} × ${part.rows} stitches.`;
-  return { ...common, size: `${stitches} stitches`, grid: part, note };
+  return { ...common, size: `${stitches} stitches`, grid: part, box: place, note };
 }
 
 /**

@@ -8,15 +8,18 @@
  * @property {string} muted
  * @property {string} accent
  * @property {string} pane
+ * @property {string} danger
  * @property {string} even
  * @property {string} odd
  * @property {number[]} knit colour of a knit: red, green, blue
  * @property {number[]} purl
  * @property {number[][]} fabrics by phase
  * @property {Record<Fabric, string>} written the same as #rrggbb
+ * @property {Record<string, string>} groups grounds of stitches that are neither knit nor purl
  * @property {boolean} dark
  */
 
+import { KIND_GROUPS } from "../grid/kinds.js";
 import { FABRICS } from "../grid/segments.js";
 
 const systemIsDark = () => matchMedia("(prefers-color-scheme: dark)");
@@ -65,12 +68,14 @@ function palette(dark) {
     muted: read("--muted"),
     accent: read("--accent"),
     pane: read("--pane"),
+    danger: read("--danger"),
     even: read("--even"),
     odd: read("--odd"),
     knit: channels(read("--knit")),
     purl: channels(read("--purl")),
     fabrics: FABRICS.map((fabric) => channels(written[fabric])),
     written,
+    groups: Object.fromEntries(KIND_GROUPS.map((group) => [group, read(`--${group}`)])),
     dark,
   };
 }

@@ -18,8 +18,11 @@
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
+import { paced } from "../core/paced.js";
 import { Grid } from "../grid/grid.js";
+import { imbalances } from "../design/balance.js";
 import { PURL } from "../design/ink.js";
+import { entriesOf } from "../design/others.js";
 import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../design/store.js";
 import { Editing } from "./editing.js";
@@ -85,6 +88,13 @@ export class Studio {
         problem: null,
       }),
     );
+    /** Rows that take more or fewer stitches than the row below has. */
+    this.balance = new Signal(/** @type {import("../design/balance.js").Imbalance[]} */ (imbalances(document)));
+    const weigh = paced(() => {
+      const rows = imbalances(document);
+      if (rows.length || this.balance.value.length) this.balance.value = rows;
+    }, 0);
+    document.onChange(weigh);
     this.step = new Signal(0);
     this.online = new Signal(true);
     /** Who is signed in with this browser, if anybody is. */
@@ -148,7 +158,9 @@ export class Studio {
     const label = "Changes from elsewhere";
     /** @param {Partial<DesignDocument>} part */
     const rest = ({ outline, regions, repeats, shelf }) => JSON.stringify([outline, regions, repeats, shelf]);
-    if (rest(content) === rest(design)) this.document.replace(Grid.fromText(design.chart), label);
+    const grid = Grid.fromText(design.chart);
+    const put = entriesOf(design.other_stitches ?? [], grid.columns);
+    if (rest(content) === rest(design)) this.document.replace(grid, label, put);
     else this.document.load(design, label);
   }
 

@@ -48,9 +48,11 @@ export async function deliver(parcel, service) {
   }
   if (same(base, document)) return { kind: "kept", parcel };
   try {
-    const strokes = same({ ...base, chart: document.chart }, document)
-      ? strokesBetween(base.chart, document.chart)
-      : null;
+    // Strokes clear other stitches where they paint: with such stitches, the whole is sent.
+    const strokes =
+      !document.other_stitches?.length && same({ ...base, chart: document.chart }, document)
+        ? strokesBetween(base.chart, document.chart)
+        : null;
     if (strokes && strokes.runs.length <= MAX_RUNS) {
       // Strokes merge at the service; only if somebody else was there do we have to look.
       const { revision } = await service.paint(remote.id, strokes);

@@ -2,11 +2,15 @@
  * Two changed copies of a design made one. What only one side changed is taken from that side, stitch
  * by stitch in the chart and item by item in lists; what both changed differently is a conflict.
  *
+ * @import {StitchRun} from "../design/others.js"
  * @import {DesignDocument} from "../types.js"
  *
  * @typedef {"name" | "material" | "note" | "machine" | "chart" | "outline" | "regions" | "repeats" | "shelf"} Part
  * @typedef {{document: DesignDocument, conflicts: Part[]}} Merged in a conflict `document` has our side
  */
+
+import { Others, entriesOf, written } from "../design/others.js";
+import { kindOf } from "../grid/kinds.js";
 
 const PLAIN = /** @type {const} */ (["name", "material", "note", "machine", "outline"]);
 const LISTS = /** @type {const} */ (["regions", "repeats", "shelf"]);
@@ -28,7 +32,11 @@ export function merge(base, mine, theirs) {
     else Object.assign(document, { [part]: value });
   };
   for (const part of PLAIN) take(part, either(base[part] ?? null, mine[part] ?? null, theirs[part] ?? null));
-  take("chart", mergeCharts(base.chart, mine.chart, theirs.chart));
+  const stitches = mergeStitches(base, mine, theirs);
+  take("chart", stitches?.chart);
+  if (stitches?.other_stitches.length || mine.other_stitches) {
+    document.other_stitches = stitches?.other_stitches ?? mine.other_stitches;
+  }
   for (const part of LISTS) {
     /** @param {DesignDocument} side @returns {{id?: string, name: string}[]} */
     const items = (side) => side[part];
@@ -41,7 +49,8 @@ export function merge(base, mine, theirs) {
 export function same(first, second) {
   return (
     [...PLAIN, /** @type {const} */ ("chart")].every((part) => (first[part] ?? null) === (second[part] ?? null)) &&
-    LISTS.every((part) => alike(first[part], second[part]))
+    LISTS.every((part) => alike(first[part], second[part])) &&
+    alike(first.other_stitches ?? [], second.other_stitches ?? [])
   );
 }
 
@@ -66,6 +75,46 @@ export function strokesBetween(before, after) {
     runs.push({ row: rows - 1 - line, column: start % (columns + 1), stitches: after.slice(start, i + 1) });
   }
   return { rows, columns, runs };
+}
+
+/**
+ * @typedef {Pick<DesignDocument, "chart"> & {other_stitches: StitchRun[]}} Stitches
+ * @param {DesignDocument} base
+ * @param {DesignDocument} mine
+ * @param {DesignDocument} theirs
+ * @returns {Stitches | undefined} undefined in a conflict
+ */
+function mergeStitches(base, mine, theirs) {
+  const sides = [base, mine, theirs].map(({ chart, other_stitches = [] }) => ({ chart, other_stitches }));
+  if (sides.every(({ other_stitches: runs }) => !runs.length)) {
+    const chart = mergeCharts(base.chart, mine.chart, theirs.chart);
+    return chart === undefined ? undefined : { chart, other_stitches: [] };
+  }
+  const whole = either(sides[0], sides[1], sides[2]);
+  if (whole !== undefined) return whole;
+  if (!sameShape(base.chart, mine.chart) || !sameShape(base.chart, theirs.chart)) return undefined;
+  const columns = base.chart.indexOf("\n") < 0 ? base.chart.length : base.chart.indexOf("\n");
+  const [was, ours, others] = sides.map((side) => cellsOf(side, columns));
+  /** @type {[number, string][]} */
+  const kept = [];
+  let chart = "";
+  for (let i = 0; i < ours.length; i++) {
+    const cell = either(was[i], ours[i], others[i]);
+    if (cell === undefined) return undefined; // both changed the same stitch, and not alike
+    if (cell.code && !cell.column) kept.push([i, cell.code]);
+    chart += cell.shown;
+  }
+  const lines = chart.match(new RegExp(`.{${columns}}`, "g")) ?? [];
+  return { chart: lines.reverse().join("\n"), other_stitches: written(Others.of(kept), columns) };
+}
+
+/** Every place from the bottom left: what it shows, and which column of which other stitch it is. @param {Stitches} side @param {number} columns */
+function cellsOf({ chart, other_stitches: runs }, columns) {
+  const cells = [...chart.split("\n").reverse().join("")].map((shown) => ({ shown, code: "", column: 0 }));
+  for (const [i, code] of entriesOf(runs, columns)) {
+    for (let column = 0; column < kindOf(code).width; column++) Object.assign(cells[i + column], { code, column });
+  }
+  return cells;
 }
 
 /**

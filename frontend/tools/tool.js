@@ -4,6 +4,7 @@
  *
  * @import {Grid} from "../grid/grid.js"
  * @import {Cell, Span} from "../grid/raster.js"
+ * @import {Others} from "../design/others.js"
  * @import {Ink} from "../design/ink.js"
  * @import {IconName} from "../elements/icons.js"
  *
@@ -18,6 +19,7 @@
  * @property {Grid} grid
  * @property {Uint8Array} codes
  * @property {Uint8Array} outline 1 where there is a stitch
+ * @property {Others} [others] stitches that are neither knit nor purl
  * @property {number} size of the brush
  * @property {Ink} ink
  *

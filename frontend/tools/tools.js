@@ -162,13 +162,17 @@ function constrained(start, current) {
   return [start[0] + Math.sign(up) * length, start[1] + Math.sign(across) * length];
 }
 
+/** What stitches look like that are neither knit nor purl. */
+const OTHER = 254;
+
 /**
  * What distinguishes stitches: knit or purl or, by fabric, their surroundings; or that there is none.
  *
  * @param {ToolContext} context
  * @param {boolean} byFabric
  */
-function looks({ grid, codes, outline }, byFabric) {
-  const values = byFabric ? codes : grid.purl;
+function looks({ grid, codes, outline, others }, byFabric) {
+  let values = byFabric ? codes : grid.purl;
+  if (others?.size) values = values.map((value, i) => (others.start(i) === undefined ? value : OTHER));
   return outline.includes(0) ? values.map((value, i) => (outline[i] ? value : 255)) : values;
 }

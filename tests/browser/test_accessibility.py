@@ -47,6 +47,7 @@ PANELS: dict[str, Callable[[Page], None]] = {
     "share-dialog": lambda page: page.click("#action-share"),
     "planner-dialog": open_planner,
     "export-dialog": lambda page: page.keyboard.press("Control+e"),
+    "panel-stitches": lambda page: page.keyboard.press("c"),
     "panel-regions": lambda page: page.keyboard.press("Shift+A"),
     "panel-repeats": lambda page: page.keyboard.press("Shift+L"),
     "compare-dialog": lambda page: page.keyboard.press("Shift+C"),

@@ -124,7 +124,8 @@ def design_in(
     """
     if is_design(path):
         design = read_design(path)
-        return ImportedDesign.of(design, chart=design.to_stitches().text), ()
+        chart = design.to_purl_map() if design.other_stitches else design.to_stitches()
+        return ImportedDesign.of(design, chart=chart.text), ()
     read = read_any_stitches(path, reading)
     piece, notes = read.content, read.notes
     if isinstance(piece, SymbolChart):

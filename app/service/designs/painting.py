@@ -7,8 +7,12 @@ import numpy as np
 from knitcore.base.errors import InputError
 from knitcore.chart.phases import surroundings
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.formats.designs.layout import DesignLayout
+from knitcore.formats.designs.other_stitches import painted_over
 
 from .document import Run, StitchKinds
+
+OTHERS = "other_stitches"
 
 
 def paint(chart: str, rows: int, columns: int, runs: Iterable[Run]) -> str:
@@ -30,6 +34,16 @@ def paint(chart: str, rows: int, columns: int, runs: Iterable[Run]) -> str:
         start = (rows - 1 - run.row) * (columns + 1) + run.column
         text[start : start + len(run.stitches)] = run.stitches.encode("ascii")
     return text.decode("ascii")
+
+
+def clear_painted(layout: str, runs: Iterable[Run]) -> str:
+    """A stored layout without the other stitches that runs of knits and purls paint over."""
+    if f'"{OTHERS}":[{{' not in layout:
+        return layout
+    parts = DesignLayout.model_validate_json(layout)
+    painted = {(run.row, run.column + k) for run in runs for k in range(len(run.stitches))}
+    left = painted_over(parts.other_stitches, painted)
+    return parts.model_copy(update={OTHERS: left}).model_dump_json()
 
 
 def kinds_around(chart: str, rows: int, columns: int, runs: Sequence[Run]) -> StitchKinds:

@@ -38,7 +38,7 @@ from .document import (
     Versions,
     VersionSummary,
 )
-from .painting import kinds_around, paint
+from .painting import clear_painted, kinds_around, paint
 
 DELETED_KEPT_S = 30 * 86_400.0
 """Time for which a deleted design can be recovered."""
@@ -131,6 +131,7 @@ class DesignStore:
                 )
             values = {
                 "chart": paint(row.chart, row.rows, row.columns, strokes.runs),
+                "layout": clear_painted(row.layout, strokes.runs),
                 "revision": row.revision + 1,
                 "changed_at": now(),
             }

@@ -8,11 +8,14 @@
 import { byHand, withKey } from "../../core/pointing.js";
 import { OVERLAYS, shownOverlay } from "../../state/overlays.js";
 import { largestStrain } from "../../chart/crosses.js";
+import { GROUNDED } from "../../chart/others.js";
+import { inWords, loadSigns, signsLoaded } from "../../chart/symbols.js";
 import { groupAt, largestExtensibility, meanExtensibility } from "../../chart/rectangles.js";
 import { LINES } from "../../core/directions.js";
 import { figure, percent, percentRange, range } from "../../core/format.js";
 import { paced } from "../../core/paced.js";
 import { h } from "../../elements/dom.js";
+import { KIND_GROUPS, kindOf } from "../../grid/kinds.js";
 import { legendOf } from "../../widgets/legend.js";
 
 /** Sides of the blocks that rectangles may stand for. */
@@ -101,6 +104,13 @@ export function overlaybar(host, studio, view) {
       pulled ? "" : `. ${needs}.`
     }`;
     legend.replaceChildren(...legendOf(shown.legend(studio, view.palette)));
+    if (GROUNDED.has(shown.id)) {
+      legend.append(
+        ...groupsOf(studio).map((group) =>
+          h("span", { class: "legend-item gap-5" }, h("span", { class: `key-cell ${group}` }), group),
+        ),
+      );
+    }
     if (studio.rectangles.value) {
       legend.append(
         h(
@@ -144,10 +154,17 @@ export function overlaybar(host, studio, view) {
   for (const signal of [studio.rectangles, groups, block]) signal.listen(() => read());
   studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
 
+  let keyed = groupsOf(studio).join();
+  studio.document.onSettle(() => {
+    const now = groupsOf(studio).join();
+    if (now !== keyed) show();
+    keyed = now;
+  });
   const read = () => (readout.textContent = describe(studio, view));
   read();
   const readSoon = paced(read, READ_MS);
   view.hover.listen(readSoon);
+  signsLoaded.listen(readSoon);
   studio.document.onChange(readSoon);
   studio.step.listen(() => {
     if (pulled !== Boolean(studio.currentStrain())) show();
@@ -179,6 +196,12 @@ export function overlaybar(host, studio, view) {
   return show;
 }
 
+/** Groups of the chart's stitches that are neither knit nor purl. @param {Studio} studio */
+function groupsOf({ document: { others } }) {
+  const groups = new Set(Array.from(others.all, ([, code]) => kindOf(code).group));
+  return KIND_GROUPS.filter((group) => groups.has(group));
+}
+
 /** @param {number} side */
 const square = (side) => (side === 1 ? "a stitch" : `${side} × ${side} stitches`);
 
@@ -198,7 +221,11 @@ function describe(studio, view) {
   const [row, column] = cell;
   const i = grid.index(row, column);
   const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
-  const parts = [`Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`];
+  const place = `Row ${row + 1} ${side}, stitch ${grid.columns - column}`;
+  const other = studio.document.others.kind(i);
+  if (other) void loadSigns(); // and the names
+  if (other) return `${place}: ${inWords(other.code)}`;
+  const parts = [`${place}: ${grid.purl[i] ? "purl" : "knit"}`];
   if (studio.rectangles.value && studio.kinds().length) {
     parts.push(give(studio, row, column, view.blockSide.value));
     return parts.join(" · ");

@@ -71,15 +71,15 @@ export function rail(host, studio, context) {
     );
   });
 
-  /** @param {"regions" | "repeats"} name @param {"regions" | "link"} sign */
-  const panel = (name, sign) => {
+  /** @param {"stitches" | "regions" | "repeats"} name @param {"stitches" | "regions" | "link"} sign @param {string} label */
+  const panel = (name, sign, label) => {
     const button = actionButton(
       action(name),
       context,
       "tool relative rounded",
       { id: `open-${name}` },
       icon(sign),
-      words(name === "regions" ? "Regions" : "Repeats"),
+      words(label),
     );
     studio.editing.panel.watch((open) => button.setAttribute("aria-pressed", String(open === name)));
     return button;
@@ -91,8 +91,9 @@ export function rail(host, studio, context) {
     size,
     symmetry,
     h("hr"),
-    panel("regions", "regions"),
-    panel("repeats", "link"),
+    panel("stitches", "stitches", "Stitches"),
+    panel("regions", "regions", "Regions"),
+    panel("repeats", "link", "Repeats"),
     actionButton(action("open-atlas"), context, "tool relative rounded", {}, words("Atlas")),
   );
 }

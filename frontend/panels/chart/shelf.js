@@ -10,6 +10,7 @@
 
 import { withKey } from "../../core/pointing.js";
 import { action } from "../../actions/registry.js";
+import { loadSigns } from "../../chart/symbols.js";
 import { readPalette } from "../../state/palette.js";
 import { FLIP, KNIT, NO_STITCH, PURL } from "../../design/ink.js";
 import { motifText } from "../../grid/grid.js";
@@ -65,7 +66,8 @@ export function shelf(host, studio, context) {
     const chosen = studio.ink.value;
     const own = ownPatterns(chart.shelf, loadShelf()).map(ownInk);
     const region = chosen.target.startsWith("region:") ? [chosen] : [];
-    const inks = [KNIT, PURL, FLIP, NO_STITCH, ...region, ...studio.shelf.value, ...own];
+    const other = chosen.others.length ? [chosen] : [];
+    const inks = [KNIT, PURL, FLIP, NO_STITCH, ...other, ...region, ...studio.shelf.value, ...own];
     const symbols = studio.editing.symbols.value;
     const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette, symbols]);
     if (what !== shown) {
@@ -88,6 +90,7 @@ export function shelf(host, studio, context) {
         ),
       );
       void inTurn(swatches, ({ ink, picture }) => {
+        if (ink.others.length) return void drawMotif(picture, ink, symbols);
         picture.src = thumbnail(ink, palette, symbols, chart.region(ink.target.slice(7))?.colour ?? "");
       });
     }
@@ -117,6 +120,12 @@ export function shelf(host, studio, context) {
   remember();
   host.append(list, removeButton, fillButton);
   return show;
+}
+
+/** The picture of an ink of lace or cables, once what draws it is there. @param {HTMLImageElement} picture @param {Ink} ink @param {Symbols} symbols */
+async function drawMotif(picture, ink, symbols) {
+  const [{ motifPicture }] = await Promise.all([import("../stitches/picture.js"), loadSigns()]);
+  picture.src = motifPicture(ink, symbols);
 }
 
 /**

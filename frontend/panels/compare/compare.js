@@ -103,7 +103,7 @@ export function create(studio, { keeper }) {
           sides.map(async ({ which, yarnId }) => {
             const sidePiece = await piece(studio, keeper, which.value);
             const material = yarnId || sidePiece.material;
-            const answered = await answers(sidePiece.scope, material, studio.gauges, signal);
+            const answered = await answers(sidePiece, material, studio.gauges, signal);
             return { piece: { ...sidePiece, material }, answers: answered };
           }),
         );

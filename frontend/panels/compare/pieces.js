@@ -8,7 +8,8 @@
  * @import {Scope} from "../../services/scope.js"
  *
  * @typedef {{value: string, group: string, label: string}} Choice
- * @typedef {{scope: Scope, material: string, chart: string, outline: string | null}} Piece
+ * @typedef {{scope: Scope, stitches: string, material: string, chart: string, outline: string | null}} Piece
+ *   `stitches` are those of the scope, of any kind
  * @typedef {{predicted: PredictResult, curves: Record<Direction, CurveResult>}} Answers
  */
 
@@ -18,6 +19,7 @@ import { ChartDocument } from "../../design/document.js";
 import { Grid } from "../../grid/grid.js";
 import { designs } from "../../sync/designs.js";
 import { scopeIn } from "../../services/scope.js";
+import { stitchesIn } from "../../services/stitches.js";
 
 /** The design in hand, as it is now. */
 export const NOW = "now";
@@ -65,6 +67,7 @@ export async function piece(studio, keeper, value) {
     const whole = kind === NOW;
     return {
       scope,
+      stitches: stitchesIn(studio, scope).chart,
       material: studio.materialId.value,
       chart: whole ? grid.text : scope.counted.grid.text,
       outline: whole ? outlineText : null,
@@ -78,18 +81,20 @@ export async function piece(studio, keeper, value) {
 function opened(design) {
   const chart = new ChartDocument(Grid.fromText(design.chart));
   chart.open(design);
-  return { scope: scopeIn(chart, null), material: design.material, chart: design.chart, outline: design.outline };
+  const scope = scopeIn(chart, null);
+  const stitches = stitchesIn({ document: chart }, scope).chart;
+  return { scope, stitches, material: design.material, chart: design.chart, outline: design.outline };
 }
 
 /**
- * @param {Scope} scope
+ * @param {Piece} piece
  * @param {string} material
  * @param {Studio["gauges"]} gauges
  * @param {AbortSignal} signal
  * @returns {Promise<Answers>}
  */
-export async function answers({ grid, shaped }, material, gauges, signal) {
-  const cloth = { chart: grid.text, material };
+export async function answers({ scope: { shaped }, stitches }, material, gauges, signal) {
+  const cloth = { chart: stitches, material };
   const body = { ...cloth, gauge: gauges.of(cloth) };
   const [predicted, course, wale] = await Promise.all([
     api.run("predict", { ...body, ...shaped }, signal),

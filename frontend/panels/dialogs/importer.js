@@ -120,7 +120,7 @@ export function listenToImports(context, isTyping) {
     if (isTyping() || document.querySelector("dialog[open]")) return;
     const { clip } = studio.editing;
     // Where a page may not write the clipboard, the clipboard is older than what was copied here.
-    const own = clip && (!navigator.clipboard || text === clip.part.text || (!text.trim() && !picture));
+    const own = clip && (!navigator.clipboard || text === clip.text || (!text.trim() && !picture));
     if (!own && !picture && !text.trim()) return;
     event.preventDefault();
     if (own) action("paste").perform(context);

@@ -10,6 +10,8 @@ import { ApiError, api, refusal } from "../../api.js";
 import { base64 } from "../../grid/bits.js";
 import { readDesign } from "../../design/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../../grid/grid.js";
+import { readCodes } from "../../grid/kinds.js";
+import { Others, entriesOf, written } from "../../design/others.js";
 
 const WRITTEN = /^\s*(cast on|co|rows?|rounds?|rnds?|r)[\s:]*\d/im;
 
@@ -41,7 +43,12 @@ export async function importRead({ studio, keeper }, name, content) {
     if (designId !== studio.designId) {
       return refusal("Another design was opened before the chart was read.", "Import it again where it belongs.");
     }
-    const { rows, columns, chart, outline, regions, notes } = imported;
+    const { rows, columns, outline, regions, notes } = imported;
+    const read = imported.other_stitches.length ? null : readCodes(imported.chart);
+    const chart = read?.chart ?? imported.chart;
+    const put = read
+      ? read.others.map(([row, column, code]) => /** @type {[number, string]} */ ([row * columns + column, code]))
+      : entriesOf(imported.other_stitches, columns);
     const size = `${columns} stitches × ${rows} rows`;
     if (!isChartText(chart)) {
       return refusal(
@@ -50,7 +57,7 @@ export async function importRead({ studio, keeper }, name, content) {
       );
     }
     if (text && !isKnitting(name, text) && !outline && !regions?.length) {
-      studio.document.replace(Grid.fromText(chart), "Import");
+      studio.document.replace(Grid.fromText(chart), "Import", put);
       studio.tell([`Imported ${size}.`, ...notes, "Undo brings the old chart back."].join(" "));
       return null;
     }
@@ -60,6 +67,7 @@ export async function importRead({ studio, keeper }, name, content) {
       name: name.replace(/\.\w+$/, "") || "Imported",
       material: studio.materialId.value,
       chart,
+      other_stitches: written(Others.of(put), columns),
       outline,
       regions,
     });

@@ -11,6 +11,10 @@
 
 import { shown } from "../../core/pointing.js";
 import { ACTIONS } from "../../actions/registry.js";
+import { loadSigns } from "../../chart/symbols.js";
+import { stitchInk } from "../../design/ink.js";
+import { NAMES } from "../../grid/names.js";
+import { KINDS } from "../../grid/kinds.js";
 import { OVERLAYS } from "../../state/overlays.js";
 import { POSES } from "../../state/seeing.js";
 import { byId, h } from "../../elements/dom.js";
@@ -19,6 +23,7 @@ import { dialog } from "../../widgets/dialog.js";
 
 /** Search words that an action's name does not contain. @type {Record<string, string>} */
 const WORDS = {
+  stitches: "yarn over eyelet lace cable cross slip tuck twisted symbols motif",
   garments: "measure measurements pressure glove sock sleeve brace plan",
   "open-find": "pressure search target stretch stiffness",
   "open-fill": "target wish stiffness softer stiffer relax region",
@@ -55,6 +60,11 @@ function entries(context) {
       icon: action.icon,
       key: action.keys[0],
       perform: () => action.perform(context),
+    })),
+    ...KINDS.filter(({ code }) => code.length === 1).map(({ code, group }) => ({
+      label: `Paint: ${NAMES[code][0]}`,
+      words: `${NAMES[code][1]} ${group}`,
+      perform: () => void loadSigns().then(() => studio.paintWith(stitchInk(code, NAMES[code]))),
     })),
     ...OVERLAYS.filter((overlay) => overlay.available(studio)).map((overlay) => ({
       label: `Colour the chart by: ${overlay.label.toLowerCase()}`,

@@ -5,6 +5,7 @@
  */
 
 import { Grid, MAX_SIDE } from "../../grid/grid.js";
+import { tiledStitches } from "../../design/others.js";
 import { resized } from "../../design/reshape.js";
 import { h, remark } from "../../elements/dom.js";
 import { dialog } from "../../widgets/dialog.js";
@@ -91,7 +92,7 @@ export function create(studio) {
     remark("Regions, outline and linked repeats move along. All three can be undone."),
     textButton(null, "New, all knit", () => apply((r, c) => document.replace(new Grid(r, c), "New chart"))),
     textButton(null, "Repeat to this size", () =>
-      apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")),
+      apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat", tiledStitches(document, r, c))),
     ),
   ];
   const [anchoring, note, anew, repeating] = forContent;

@@ -185,8 +185,12 @@ export function create(studio, { view }) {
     outcome.replaceChildren(
       h("p", { class: "muted" }, kind.to === "knitout" ? "Checking it on a simulated machine …" : "One moment …"),
     );
+    const { other_stitches: others, ...design } = studio.toDocument();
+    // The project file has knits and purls, and the others beside them; the rest has all in one chart.
+    const stitches = kind.to === "design" ? { other_stitches: others } : { chart: studio.document.text };
     const body = {
-      ...studio.toDocument(),
+      ...design,
+      ...stitches,
       format: undefined,
       version: undefined,
       ...chosen,
@@ -214,7 +218,17 @@ export function create(studio, { view }) {
   async function explain(request) {
     const { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number, from_row } =
       request;
-    const design = { chart, outline, regions, material, machine, finish, gauge, linear_density_tex, stitch_number };
+    const design = {
+      chart,
+      outline,
+      regions,
+      material,
+      machine,
+      finish,
+      gauge,
+      linear_density_tex,
+      stitch_number,
+    };
     const [price_per_kg, price_per_hour] = [perKg, perHour].map(({ valueAsNumber: n }) => (n > 0 ? n : null));
     const body = { ...design, from_row, price_per_kg, price_per_hour };
     const report = await attempt(status, () => api.run("program-report", /** @type {ProgramReportRequest} */ (body)));

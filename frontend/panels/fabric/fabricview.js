@@ -219,6 +219,11 @@ export function fabricview(host, studio, view) {
         return;
       }
       const { field } = error.problem;
+      if (field === "chart" && scene.chart !== studio.document.grid.text) {
+        refusedChart = String(scene.chart);
+        again = true;
+        return;
+      }
       if (field === "curl.id" && studio.seeing.posed.value) {
         const { pose, curling } = studio.seeing;
         const forgotten = { pose: pose.value, curling: curling.value }; // by a restarted service
@@ -270,9 +275,12 @@ export function fabricview(host, studio, view) {
   let confirmedColours = coloursOf(studio);
   const words = () => {
     const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
-    return strain && !studio.seeing.posed.value
-      ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
-      : poseText(studio);
+    const plain = studio.document.others.size && stitchesShown(studio) === studio.document.grid.text;
+    return `${
+      strain && !studio.seeing.posed.value
+        ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
+        : poseText(studio)
+    }${plain ? ": the knits and purls of the chart alone" : ""}`;
   };
   const describe = () => {
     const stale = changes !== changesShown && confirmed !== "";
@@ -375,6 +383,7 @@ export function viewRequest(studio, view) {
   }
   return {
     ...pieceOf(studio),
+    ...(chart.others.size && { chart: stitchesShown(studio) }),
     colour: /** @type {ViewRequest["colour"]} */ (colour),
     palette,
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],
@@ -388,6 +397,17 @@ export function viewRequest(studio, view) {
         ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }
         : null,
   };
+}
+
+/** A chart of any stitches that the service did not draw: its knits and purls are shown. */
+let refusedChart = "";
+
+/** The stitches that the view draws: all where the cloth lies flat, its knits and purls where it is pulled or posed. @param {Studio} studio @returns {string} */
+function stitchesShown(studio) {
+  const { document: chart, seeing, balance } = studio;
+  const lies = seeing.pose.value === "flat" && !studio.currentStrain() && !chart.shaped && !balance.value.length;
+  const codes = chart.others.size && lies ? chart.text : "";
+  return codes && codes !== refusedChart ? codes : chart.grid.text;
 }
 
 /** The test that is shown: none while the fabric is shown in another pose, or the test is run again. @param {Studio} studio */

@@ -7,6 +7,7 @@
 
 import { api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
+import { plainNote } from "../../widgets/plainnote.js";
 import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { h } from "../../elements/dom.js";
@@ -131,6 +132,7 @@ export function drape(host, studio) {
     );
   };
   host.append(
+    plainNote(studio, "Drape"),
     h(
       "div",
       { class: "limb-more flex wrap gap-6" },

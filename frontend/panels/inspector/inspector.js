@@ -12,6 +12,7 @@ import { paced } from "../../core/paced.js";
 import { sourceInWords } from "../../core/plainly.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
 import { scopeOf, sizeAtRest } from "../../services/scope.js";
+import { remarksOn } from "../../services/stitches.js";
 import { placeOf, predictionOf } from "../../services/belonging.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
@@ -56,6 +57,8 @@ export function inspector(host, studio) {
   const table = h("table", { class: "numbers full-width" });
   const rank = h("div", { class: "small muted hand-rank", id: "hand-rank" });
   const compared = h("p", { class: "small muted hand-rank", id: "sizes-compared" });
+  const others = h("p", { class: "small", id: "other-stitches" });
+  const plain = h("p", { class: "small muted", id: "plain-note" });
   const shares = h("div", { class: "shares stack gap-6" });
   const segments = h("div", { class: "shares stack gap-6" });
   const { handPull, details: detailed } = studio.seeing;
@@ -140,11 +143,13 @@ export function inspector(host, studio) {
       source,
     ),
     problem,
+    plain,
     h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
     felt,
     rank,
     gauge.element,
     compared,
+    others,
     shares,
     details,
   );
@@ -180,10 +185,17 @@ export function inspector(host, studio) {
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     fill(table, value);
     feel(value, part);
+    others.textContent = value?.other_stitches ? othersInWords(value) : "";
+    plain.textContent = value ? remarksOn(studio, part).note : "";
     source.hidden = !value;
     gauge.show(value);
     if (value) {
-      const lines = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
+      const lines = [
+        part.note,
+        remarksOn(studio, part).note,
+        ...value.notes,
+        `90 % intervals: ${value.interval_source}`,
+      ].filter(Boolean);
       name();
       notes.replaceChildren(...lines.map((note) => h("li", {}, note)));
     }
@@ -291,6 +303,25 @@ export function inspector(host, studio) {
     draw.rigidity();
     if (!curve.hidden) draw.curve();
   };
+}
+
+/** What the stitches are that are neither knit nor purl, and what they take. @param {PredictResult} value */
+function othersInWords({ other_stitches: of, yarn_per_stitch_mm: yarn, yarn_per_stitch_interval_mm: ends }) {
+  if (!of) return "";
+  const shares = /** @type {const} */ ([
+    [of.yarn_overs, "yarn overs"],
+    [of.slips, "slipped"],
+    [of.tucks, "tucked"],
+  ])
+    .filter(([share]) => share)
+    .map(([share, name]) => `${percent(share)} ${name}`);
+  const said = [
+    shares.length && `Of its stitches ${shares.join(", ")}.`,
+    of.crossings && `${figure(of.crossings)} crossings a stitch.`,
+    yarn && `Yarn a stitch: ${figure(yarn)} mm${ends ? ` (${range(ends)})` : ""}.`,
+    of.longest_float_mm && `Longest float: ${figure(of.longest_float_mm)} mm.`,
+  ];
+  return said.filter(Boolean).join(" ");
 }
 
 /** How a stretch compares with those of the yarn's own fabrics. @param {PredictResult["hand"][number]["course"]} stretch */

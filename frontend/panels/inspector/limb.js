@@ -8,6 +8,7 @@
 
 import { api } from "../../api.js";
 import { percent, range } from "../../core/format.js";
+import { plainNote } from "../../widgets/plainnote.js";
 import { Belonging, clothOf } from "../../services/belonging.js";
 import { Latest } from "../../services/latest.js";
 import { isWarning } from "../../services/poser.js";
@@ -155,6 +156,7 @@ export function limb(host, studio) {
     );
   };
   host.append(
+    plainNote(studio, "The fit on a limb"),
     h(
       "div",
       { class: "limb-fields flex wrap" },

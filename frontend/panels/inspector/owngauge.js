@@ -7,7 +7,8 @@
 
 import { percent } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
-import { clothIn, scopeOf } from "../../services/scope.js";
+import { scopeOf } from "../../services/scope.js";
+import { anyClothIn } from "../../services/stitches.js";
 import { numberField } from "../../widgets/fields.js";
 
 /** Half of a 90 % interval of a size that was counted, as a share of it. */
@@ -21,7 +22,7 @@ const OF_A_PART = "It is of this part only: the whole chart, in 3D and in tests,
  * @returns {{element: HTMLElement, show: (predicted: PredictResult | null) => void}}
  */
 export function ownGauge(studio) {
-  const cloth = () => clothIn(studio, scopeOf(studio));
+  const cloth = () => anyClothIn(studio, scopeOf(studio));
   const keep = () => {
     const fields = [stitches, rows];
     if (fields.some((field) => !field.validity.valid)) return;

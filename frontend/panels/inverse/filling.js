@@ -6,6 +6,7 @@
 
 import { byId, h } from "../../elements/dom.js";
 import { docked } from "../../widgets/dock.js";
+import { plainNote } from "../../widgets/plainnote.js";
 import { segmented } from "../../widgets/fields.js";
 import { fromStiffness } from "./fill.js";
 import { fromOutline } from "./outline.js";
@@ -22,7 +23,7 @@ export function create(studio) {
   const segments = ways.map(({ id, label }) => /** @type {const} */ ([id, label, { id: `fill-${id}` }]));
   const choice = segmented("What is asked for", segments, "stiffness", show);
   const content = h("div", { class: "inverse filling" }, choice.element, ...ways.map(({ element }) => element));
-  const open = docked(studio, "fill", "Fill from a target", content);
+  const open = docked(studio, "fill", "Fill from a target", plainNote(studio, "The filling"), content);
   return () => {
     open();
     stiffness.opened();

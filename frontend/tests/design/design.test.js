@@ -15,6 +15,7 @@ const WHOLE = {
   note: "warm",
   machine: "kniterate",
   chart: "KPKP\nPKPK\nKKKK",
+  other_stitches: [],
   outline: "xxx.\nxxxx\nxxxx",
   regions: [
     {

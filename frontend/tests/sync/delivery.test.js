@@ -15,6 +15,7 @@ const design = (chart, more = {}) => ({
   material: "acrylic",
   note: "",
   machine: null,
+  other_stitches: [],
   outline: null,
   regions: [],
   repeats: [],
@@ -255,4 +256,32 @@ test("the same change by somebody else is a conflict still", async () => {
   await service.replace("1", design("PK\nKK", { name: "Theirs" }), 1);
   const mine = { ...parcel, document: design("KK\nKK", { name: "Mine" }), sent: [design("PP\nKK")] };
   assert.equal((await deliver(mine, service)).kind, "conflict");
+});
+
+test("lace of two people becomes one chart, stitch by stitch; the same stitch painted twice is a conflict", () => {
+  const base = design("KKKKKK\nKKKKKK", { other_stitches: [{ row: 0, column: 0, codes: "[1/1R]" }] });
+  const lace = [...base.other_stitches, { row: 1, column: 0, codes: "O/" }];
+  const mine = { ...base, other_stitches: lace };
+  const theirs = design("KKKKPK\nKPKKKK", { other_stitches: [{ row: 1, column: 3, codes: "V" }] });
+  const { document, conflicts } = merge(base, mine, theirs);
+  assert.deepEqual(conflicts, []);
+  assert.equal(document.chart, "KKKKPK\nKPKKKK");
+  assert.deepEqual(document.other_stitches, [
+    { row: 1, column: 0, codes: "O/" },
+    { row: 1, column: 3, codes: "V" },
+  ]);
+  const other = { ...base, other_stitches: [{ row: 1, column: 1, codes: "V" }] };
+  assert.deepEqual(merge(base, mine, other).conflicts, ["chart"]);
+  assert.ok(!same(base, mine) && same(mine, { ...mine }));
+});
+
+test("a chart with lace is sent whole: strokes would paint it over", async () => {
+  const service = new OneDesign();
+  const lace = design("KK\nKK", { other_stitches: [{ row: 1, column: 0, codes: "V" }] });
+  await service.create(lace, "key");
+  service.paint = () => assert.fail("painted");
+  const document = { ...lace, chart: "PK\nPK" };
+  const parcel = { id: "a", remote: { id: "1", revision: 1 }, base: lace, document };
+  assert.equal((await deliver(parcel, service)).kind, "kept");
+  assert.deepEqual(service.kept?.document, document);
 });

@@ -4,6 +4,7 @@ import { Grid } from "../../grid/grid.js";
 import { FLIP, Ink, KNIT, PURL, inked, regionInk } from "../../design/ink.js";
 import { Floating, changed } from "../../design/floating.js";
 import { ellipse, enclosed, flood, line, rectangle, thick } from "../../grid/raster.js";
+import { Others } from "../../design/others.js";
 import { surroundings } from "../../grid/segments.js";
 import { combined, selectedCells } from "../../design/selection.js";
 import { TOOLS } from "../../tools/tools.js";
@@ -26,7 +27,7 @@ function draw(id, grid, start, end, { ink = PURL, size = 1, constrain = false, s
   const outline = grid.purl.map(() => 1);
   const spans = tool.spans(gesture, { grid, codes: surroundings(grid), outline, size, ink });
   const result = Grid.fromText(grid.text);
-  const brush = inked(grid, spans, ink, tool.origin?.(gesture) ?? [0, 0], symmetry);
+  const [brush] = inked(grid, spans, ink, tool.origin?.(gesture) ?? [0, 0], symmetry);
   for (const i of brush.touched) result.purl[i] = brush.values[i];
   return result.text;
 }
@@ -131,7 +132,7 @@ test("selections are added, subtracted, intersected and mirrored", () => {
 
 test("what is in the hand is put down, and what lay under it comes back", () => {
   const grid = Grid.fromText("KKKK\nPPKK\nPKKP");
-  const lifted = Floating.lift(grid, { row0: 0, column0: 0, row1: 2, column1: 2 }, false);
+  const lifted = Floating.lift({ grid, others: new Others() }, { row0: 0, column0: 0, row1: 2, column1: 2 }, false);
   const after = Grid.fromText(grid.text);
   for (const [i, value] of lifted.moved(grid, [0, 2])) after.purl[i] = value;
   assert.equal(after.text, "KKKK\nKKPP\nKKPK");

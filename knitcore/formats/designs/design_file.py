@@ -19,8 +19,9 @@ from pydantic import ConfigDict, Field, ValidationError
 from knitcore.base.errors import InputError
 from knitcore.base.reading_time import in_reading_time
 from knitcore.chart.stitch_chart import StitchChart
-from knitcore.chart.symbol_chart import SymbolChart, as_stitches, plain_chart
+from knitcore.chart.symbol_chart import SymbolChart, as_stitches, knits_and_purls, plain_chart
 from knitcore.formats.designs.layout import MAX_TEXT, DesignLayout, check_layout, piece_of
+from knitcore.formats.designs.other_stitches import composed
 from knitcore.garment.piece import Piece
 
 FORMAT: Final = "knitcore-design"
@@ -57,10 +58,22 @@ class DesignFile(DesignLayout):
 
     def to_chart(self) -> StitchChart:
         """The chart itself, of knits and purls."""
+        return knits_and_purls(self.to_stitches()) if self.other_stitches else self.to_purl_map()
+
+    def to_purl_map(self) -> StitchChart:
+        """The knits and purls of the chart, also those under other stitches."""
         return plain_chart(self.chart)
 
     def to_stitches(self) -> StitchChart | SymbolChart:
-        """The chart itself, of any stitches."""
+        """The chart itself, of any stitches.
+
+        Raises
+        ------
+        InputError
+            As :func:`composed`.
+        """
+        if self.other_stitches:
+            return composed(self.to_purl_map(), self.other_stitches)
         return as_stitches(self.chart)
 
 
@@ -69,6 +82,8 @@ def write_design(design: DesignFile) -> str:
     fields = []
     for name in (*_HEADER, *DesignLayout.model_fields):
         value = design.model_dump(include={name})[name]
+        if name == "other_stitches" and not value:
+            continue
         written = json.dumps(value, ensure_ascii=False)
         if isinstance(value, list) and value:
             items = ",\n  ".join(json.dumps(item, ensure_ascii=False) for item in value)
@@ -113,7 +128,7 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise InputError(where, f"{name}: {first['msg']}.", "Correct or export it again.") from None
-    stitches = design.to_stitches()
+    stitches = design.to_purl_map() if design.other_stitches else design.to_stitches()
     if isinstance(stitches, SymbolChart):
         check_bare(design)
     else:

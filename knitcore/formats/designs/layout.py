@@ -1,4 +1,5 @@
-"""Parts of a design other than its chart: outline, regions, linked repeats and patterns.
+"""Parts of a design other than its chart: other stitches, outline, regions, linked repeats and
+patterns.
 
 The same fields are in the project file, in the service's designs and in the page.
 """
@@ -13,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from knitcore.base.arrays import Mask
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.formats.designs.other_stitches import MAX_STITCH_RUNS, Index, StitchRun, placed
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart, check_outline, check_outline_size, outline_marks
 from knitcore.machine.profile import MAX_BYTES as MAX_MACHINE
@@ -33,10 +35,6 @@ Motif = Annotated[
         description="A repeat; its rows from the top, separated by /.",
         examples=["KP/PK"],
     ),
-]
-Index = Annotated[
-    int,
-    Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="From 0, the bottom row or the left column."),
 ]
 Length = Annotated[int, Field(ge=1, le=MAX_STITCHES_PER_SIDE)]
 
@@ -93,6 +91,12 @@ class ShelfPattern(_Part):
 class DesignLayout(BaseModel):
     """Everything in a design except its chart and its names."""
 
+    other_stitches: list[StitchRun] = Field(
+        default=[],
+        max_length=MAX_STITCH_RUNS,
+        description="Stitches that are neither knit nor purl; under them the chart has the K or P "
+        "that each shows.",
+    )
     outline: str | None = Field(
         None,
         max_length=MAX_TEXT,
@@ -193,6 +197,8 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
     InputError
         Naming the region, repeat or outline, the problem and the remedy.
     """
+    for _ in placed(layout.other_stitches, chart.rows, chart.columns):
+        pass
     if layout.outline is not None:
         check_outline_size(outline_marks(layout.outline), chart)
     for field, items in (("regions", layout.regions), ("repeats", layout.repeats)):

@@ -1,11 +1,13 @@
 """Files of charts, which may be made to keep their readers busy."""
 
 import base64
+import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from app.operations.files.imports import design_in
 from app.service import main
 from app.service.compute.processes import ProcessWorker, processes
 from knitcore.base import reading_time
@@ -53,3 +55,13 @@ def test_a_command_refuses_a_file_that_takes_too_long(
         printed = refused(*command, file)
         assert printed.startswith(words)
         assert printed.count("\n") == 1
+
+
+def test_a_design_with_lace_keeps_it_also_where_rows_do_not_balance(tmp_path: Path) -> None:
+    file = tmp_path / "lace.json"
+    lace = [{"row": 1, "column": 0, "codes": "O"}]
+    content = {"format": "knitcore-design", "version": 2, "chart": "KK\nKP", "other_stitches": lace}
+    file.write_text(json.dumps(content))
+    design, _ = design_in(file)
+    assert design.chart == "KK\nKP"
+    assert [run.model_dump() for run in design.other_stitches] == lace

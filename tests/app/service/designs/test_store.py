@@ -302,13 +302,26 @@ def test_outline_regions_repeats_and_shelf_are_kept_everywhere(designs: DesignSt
     assert designs.restore("ada", made.id, 1, "*").document == LAYOUT
 
 
+def test_other_stitches_are_kept_everywhere_and_painted_over(designs: DesignStore) -> None:
+    lace = [{"row": 1, "column": 1, "codes": "O/"}, {"row": 0, "column": 0, "codes": "[2/2R]"}]
+    document = DesignDocument.model_validate({**LAYOUT.model_dump(), "other_stitches": lace})
+    made = designs.create("ada", document)
+    assert made.document == document
+    designs.keep_version("ada", made.id, "lace")
+    assert designs.duplicate("ada", made.id).document.other_stitches == document.other_stitches
+    _paint(designs, made, (1, 2, "P"), (0, 3, "K"))
+    left = designs.get("ada", made.id).document.other_stitches
+    assert [(run.row, run.column, run.codes) for run in left] == [(1, 1, "O")]
+    assert designs.restore("ada", made.id, 1, "*").document == document
+
+
 def test_a_layout_must_belong_to_its_chart(designs: DesignStore) -> None:
     with pytest.raises(InputError, match="4x2 cells, the chart 2x1"):
         designs.create("ada", LAYOUT.model_copy(update={"chart": "KP"}))
 
 
 LARGE = DesignDocument(name="Cuff", material="acrylic", chart="\n".join(["KP" * 50] * 100))
-BESIDE_IT = {"outline", "machine", "regions", "repeats", "shelf"}
+BESIDE_IT = {"other_stitches", "outline", "machine", "regions", "repeats", "shelf"}
 SIZE = len(LARGE.chart) + len(LARGE.model_dump_json(include=BESIDE_IT))
 
 
