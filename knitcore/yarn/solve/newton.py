@@ -192,8 +192,7 @@ class _Descent:
         self.held, self.goal = held, goal
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
         self.damping = options.damping * self.first_damping
-        dense_only = energy.slides or energy.sliding is not None
-        self.sparse = energy.cell.stitches >= SPARSE_FROM and not dense_only
+        self.sparse = energy.cell.stitches >= SPARSE_FROM and not energy.slides
         self.single = self.sparse
         self.dissection = Dissection()
         self.room = Room()
