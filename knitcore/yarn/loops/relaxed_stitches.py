@@ -16,7 +16,7 @@ from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import check_stitches
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.yarn.loops.stitch_energy import StitchEnergy, YarnPerAct
-from knitcore.yarn.loops.take_down import GRID, TakeDown, room_for_yarn
+from knitcore.yarn.loops.take_down import GRID, TakeDown, pulls_n, room_for_yarn
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
@@ -27,6 +27,7 @@ from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.clasps import clasp_code, same_clasps
 from knitcore.yarn.solve.friction import Rubbing, check_coefficient, rub
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
+from knitcore.yarn.solve.splines import compile_kernels
 from knitcore.yarn.solve.topology import clearance_at
 
 MAX_STITCHES = 36
@@ -35,9 +36,13 @@ BLOCKING_N_PER_MM = 0.03
 """Pull both ways of a blocked cloth."""
 FRICTION = 0.26
 """Coefficient of friction between yarns unless another is given."""
-_RELEASE = 6
+TAKE_DOWN_N_PER_MM = 0.03
+"""Pull along the wale of a cloth as it was knitted."""
+_RELEASE = 3
 """Steps in which a pull is let go."""
 _SETTLED = Options(tolerance=1e-6, slack=1e-6, iterations=150)
+_PULLED = Options(tolerance=1e-4, slack=1e-4, iterations=150)
+"""Settings under a pull that is let go afterwards."""
 _RUBBED = Options(tolerance=1e-5, slack=1e-5, iterations=60)
 _COMPARED = 192
 """Samples of a stitch by which two resolutions are compared."""
@@ -174,6 +179,7 @@ def relax_stitches(
     check_loop(yarn, loop_length_mm)
     whole = chart.tile(2 if chart.rows == 1 else 1, 2 if chart.columns == 1 else 1)
     check_stitches(whole.rows * whole.columns, MAX_STITCHES, "its repeat")
+    compile_kernels()
     clock = time.process_time()
     graph = whole.graph
     drawn = room_for_yarn(graph, yarn, loop_length_mm)
@@ -211,14 +217,15 @@ def _at_rest(
     cancelled: Cancelled | None,
 ) -> tuple[StitchEnergy, Minimum]:  # fmt: skip
     """The state after a history, from that under the take-down."""
-    pull = energy.pull_n
-    if history is StitchHistory.AGITATED:
-        pull = (0.0, 0.0)
+    stitches, pull = energy.cell.stitches, (0.0, 0.0)
+    if history is StitchHistory.KNITTED:
+        pull = pulls_n(stitches, energy.mean_loop_mm, TAKE_DOWN_N_PER_MM)
     if history is StitchHistory.BLOCKED:
-        both = BLOCKING_N_PER_MM * energy.cell.stitches
+        both = BLOCKING_N_PER_MM * stitches
         pull = both * float(state[-1]), both * float(state[-2])
     energy = replace(energy, pull_n=pull, spacing_per_bending=SPACING_PER_BENDING)
-    minimum = minimise(energy, state, tension=tension, options=_SETTLED, cancelled=cancelled)
+    options = _SETTLED if history is StitchHistory.AGITATED else _PULLED
+    minimum = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
     if history is StitchHistory.AGITATED:
         return energy, minimum
     rubbing = Rubbing(np.zeros(0, np.int64), np.zeros((0, 2)))
