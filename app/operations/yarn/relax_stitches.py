@@ -62,9 +62,18 @@ class RelaxStitchesResult(ResultModel):
     pattern: str = Field(description="The repeat, at least two stitches each way.")
     history: StitchHistory
     friction: float | None
-    cell_course_mm: float = Field(description="Width of a stitch of this shape.")
-    cell_wale_mm: float
+    cell_course_mm: float | None = Field(
+        description="Width of a stitch of this shape; null where the cloth folds."
+    )
+    cell_wale_mm: float | None
     thickness_mm: float
+    folded: bool = Field(description="True where rows or columns of the cloth stand up.")
+    hole_share: float | None = Field(
+        description="Part of the cloth that no yarn covers, 0 to 1; null where it folds."
+    )
+    eyelet_mm2: float | None = Field(
+        description="Mean area of the holes of yarn overs, neighbouring ones together."
+    )
     energy_n_mm: float = Field(description="Energy of a stitch.")
     bending_share: float
     crossings: int = Field(description="Crossings of the yarn that the chart asks for, all kept.")
@@ -106,16 +115,24 @@ def _relaxed(
         relax_stitches, chart, used.yarn, used.loop_length_mm, cancelled=context.cancelled
     )
     lines = cell.centre_lines.tolist() if request.centre_lines else None
-    return RelaxStitchesResult.of(cell, yarn=YarnResult.of_chart(used), centre_lines_mm=lines)
+    result = RelaxStitchesResult.of(cell, yarn=YarnResult.of_chart(used), centre_lines_mm=lines)
+    unknown = ("cell_course_mm", "cell_wale_mm", "hole_share", "eyelet_mm2") if cell.folded else ()
+    return result.model_copy(update=dict.fromkeys(unknown))
 
 
 def _lines(r: RelaxStitchesResult) -> list[str]:
     after = r.history if r.friction is None else f"{r.history}, friction {r.friction:g}"
+    size, holes = "has no size, as the cloth folds", "not known, as the cloth folds"
+    if r.cell_course_mm is not None and r.cell_wale_mm is not None:
+        size = f"{r.cell_course_mm:.3f} mm wide, {r.cell_wale_mm:.3f} mm high"
+    if r.hole_share is not None:
+        eyelets = "" if r.eyelet_mm2 is None else f", {r.eyelet_mm2:.1f} mm² an eyelet"
+        holes = f"{r.hole_share:.0%} of the cloth{eyelets}"
     return [
         f"repeat          {r.pattern}",
         f"history         {after}",
-        f"stitch          {r.cell_course_mm:.3f} mm wide, {r.cell_wale_mm:.3f} mm high, "
-        f"{r.thickness_mm:.2f} mm thick",
+        f"stitch          {size}, {r.thickness_mm:.2f} mm thick",
+        f"holes           {holes}",
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {r.bending_share:.0%} bending",
         f"crossings       {r.crossings}, all as the chart asks",
         f"solved          {r.seconds:.2f} s CPU, {'converged' if r.converged else 'NOT converged'}"

@@ -125,11 +125,13 @@ def friction_slopes(
 
 
 @compiled
-def friction_hessian(
+def friction_hessian(  # noqa: PLR0915 - compiled: one pair at a time
     curve: Array, course_mm: float, wale_mm: float, sliding: Sliding, layout: Layout,
-    speeds: Array, hessian: Array,
+    speeds: Array, tiles: Array, where: Pairs, sizes: Array,
 ) -> None:  # fmt: skip
-    """Add the second derivatives by the unknowns to a dense Hessian."""
+    """Add the second derivatives by the unknowns to the tiles of a Hessian (see
+    :class:`~knitcore.yarn.kernels.tiles.TiledMatrix`) and to its rows of the two sizes."""
+    local, tile_size = layout.unknowns - 2, tiles.shape[1]
     samples = layout.place.shape[0]
     per_span = layout.basis.shape[1]
     count = samples // per_span
@@ -186,4 +188,9 @@ def friction_hessian(
                 value = s0 * slope[v, 0] + s1 * slope[v, 1]
                 if component[u] == component[v]:
                     value += first * by[v, 0] + by[u, 0] * (p0 * by[v, 1] + p1 * by[v, 2])
-                hessian[unknown[u], unknown[v]] += value
+                row, column = unknown[u], unknown[v]
+                block, other = row // tile_size, column // tile_size
+                if row >= local:
+                    sizes[row - local, column] += value
+                elif column < local and block >= other and where[block, other] >= 0:
+                    tiles[where[block, other], row % tile_size, column % tile_size] += value

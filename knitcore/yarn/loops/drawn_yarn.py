@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -50,39 +51,61 @@ class DrawnYarn:
 
 
 def drawn_yarn(graph: StitchGraph, wale_mm: float, row_mm: float, layer_mm: float) -> DrawnYarn:
-    """Draw the yarn of a repeat with the crossings of its graph.
+    """Draw the yarn of a repeat with the crossings of its graph (see :class:`Drawing`)."""
+    return Drawing(graph)(wale_mm, row_mm, layer_mm)
 
-    Parameters
-    ----------
-    wale_mm, row_mm : width of a wale and height of a plain row.
-    layer_mm : distance of strands that cross.
 
-    Raises
-    ------
-    ConvergenceError
-        If no resolution shows all crossings.
-    """
-    paths, needed = LoopPaths(HeldLoops(graph)), Crossings.of(graph)
-    rows, height = graph.rows, float(paths.heights[-1]) * row_mm
-    lines = [
-        _Line.of(paths.of_row(row), np.array([wale_mm, row_mm, layer_mm])) for row in range(rows)
-    ]
-    for grid, smooth in product(_GRIDS, (False, True)):
-        cell = YarnCell(np.zeros(graph.act.shape, bool), False, False, None, grid)
-        points = np.stack([line.controls(grid, smooth) for line in lines])
-        points[..., 1] -= height / rows * np.arange(rows)[:, None]
-        state = cell.state(points, wale_mm, height / rows)
-        curves = centre_lines(cell, state, rows, graph.columns)
-        parts = np.stack([line.parts(cell.place / graph.columns) for line in lines])
-        drawn = drawn_crossings(curves, parts, graph.columns * wale_mm, height)
-        wrong = needed.wrong(drawn)
-        if not wrong:
-            return DrawnYarn(cell, state, drawn, sum(needed.exact.values()))
-    row, column, _ = wrong[0].lower
-    raise ConvergenceError(
-        f"The yarn at row {row + 1}, stitch {column + 1} cannot be drawn as the chart says. Make "
-        "its loops lean less far, or put a plain row between."
-    )
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """The yarn of a repeat, to be drawn at any size."""
+
+    graph: StitchGraph
+
+    @cached_property
+    def paths(self) -> LoopPaths:
+        """The paths of its yarn."""
+        return LoopPaths(HeldLoops(self.graph))
+
+    @cached_property
+    def _rows(self) -> list[YarnPath]:
+        return [self.paths.of_row(row) for row in range(self.graph.rows)]
+
+    @cached_property
+    def _needed(self) -> Crossings:
+        return Crossings.of(self.graph)
+
+    def __call__(self, wale_mm: float, row_mm: float, layer_mm: float) -> DrawnYarn:
+        """Draw it with the crossings of its graph.
+
+        Parameters
+        ----------
+        wale_mm, row_mm : width of a wale and height of a plain row.
+        layer_mm : distance of strands that cross.
+
+        Raises
+        ------
+        ConvergenceError
+            If no resolution shows all crossings.
+        """
+        graph, needed = self.graph, self._needed
+        rows, height = graph.rows, float(self.paths.heights[-1]) * row_mm
+        lines = [_Line.of(path, np.array([wale_mm, row_mm, layer_mm])) for path in self._rows]
+        for grid, smooth in product(_GRIDS, (False, True)):
+            cell = YarnCell(np.zeros(graph.act.shape, bool), False, False, None, grid)
+            points = np.stack([line.controls(grid, smooth) for line in lines])
+            points[..., 1] -= height / rows * np.arange(rows)[:, None]
+            state = cell.state(points, wale_mm, height / rows)
+            curves = centre_lines(cell, state, rows, graph.columns)
+            parts = np.stack([line.parts(cell.place / graph.columns) for line in lines])
+            drawn = drawn_crossings(curves, parts, graph.columns * wale_mm, height)
+            wrong = needed.wrong(drawn)
+            if not wrong:
+                return DrawnYarn(cell, state, drawn, sum(needed.exact.values()))
+        row, column, _ = wrong[0].lower
+        raise ConvergenceError(
+            f"The yarn at row {row + 1}, stitch {column + 1} cannot be drawn as the chart says. "
+            "Make its loops lean less far, or put a plain row between."
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,12 @@ from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import check_stitches
+from knitcore.chart.stitch_graph import StitchGraph
+from knitcore.chart.stitch_kinds import YarnAct
 from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.holes import holes, is_folded
 from knitcore.yarn.loops.stitch_energy import StitchEnergy, YarnPerAct
-from knitcore.yarn.loops.take_down import GRID, TakeDown, room_for_yarn
+from knitcore.yarn.loops.take_down import GRID, TakeDown, pulls_n, room_for_yarn
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
@@ -27,6 +30,7 @@ from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.clasps import clasp_code, same_clasps
 from knitcore.yarn.solve.friction import Rubbing, check_coefficient, rub
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
+from knitcore.yarn.solve.splines import compile_kernels
 from knitcore.yarn.solve.topology import clearance_at
 
 MAX_STITCHES = 36
@@ -35,9 +39,13 @@ BLOCKING_N_PER_MM = 0.03
 """Pull both ways of a blocked cloth."""
 FRICTION = 0.26
 """Coefficient of friction between yarns unless another is given."""
-_RELEASE = 6
+TAKE_DOWN_N_PER_MM = 0.03
+"""Pull along the wale of a cloth as it was knitted."""
+_RELEASE = 3
 """Steps in which a pull is let go."""
 _SETTLED = Options(tolerance=1e-6, slack=1e-6, iterations=150)
+_PULLED = Options(tolerance=1e-4, slack=1e-4, iterations=150)
+"""Settings under a pull that is let go afterwards."""
 _RUBBED = Options(tolerance=1e-5, slack=1e-5, iterations=60)
 _COMPARED = 192
 """Samples of a stitch by which two resolutions are compared."""
@@ -46,6 +54,7 @@ CAUTION = (
     "cells with lace, cables, slipped or tucked stitches miss measured cloth by a factor of 1.2 to "
     "1.35: take them as a picture of the yarn, not as a prediction."
 )
+FOLDED = "The cloth folds in this shape, so it has no size."
 
 
 class StitchHistory(Choice):
@@ -71,6 +80,10 @@ class RelaxedStitches(Result):
     history, friction : how it came to rest; no friction where it was agitated.
     cell_course_mm, cell_wale_mm : width of a wale and height of a row, mm.
     thickness_mm : from the lowest to the highest yarn.
+    folded : whether its rows or columns stand rather than lie, so that its sizes are none of a
+        cloth.
+    hole_share : part of the cloth that no yarn covers.
+    eyelet_mm2 : mean area of the holes of yarn overs, neighbouring ones together; None without any.
     energy_n_mm : energy of one site, N·mm.
     bending_share : share of bending in it.
     crossings : crossings of the first shape that the chart asks for. All steps of the yarn from
@@ -91,6 +104,9 @@ class RelaxedStitches(Result):
     cell_course_mm: float
     cell_wale_mm: float
     thickness_mm: float
+    folded: bool
+    hole_share: float
+    eyelet_mm2: float | None
     energy_n_mm: float
     bending_share: float
     crossings: int
@@ -174,6 +190,7 @@ def relax_stitches(
     check_loop(yarn, loop_length_mm)
     whole = chart.tile(2 if chart.rows == 1 else 1, 2 if chart.columns == 1 else 1)
     check_stitches(whole.rows * whole.columns, MAX_STITCHES, "its repeat")
+    compile_kernels()
     clock = time.process_time()
     graph = whole.graph
     drawn = room_for_yarn(graph, yarn, loop_length_mm)
@@ -186,15 +203,21 @@ def relax_stitches(
     if not same_clasps(_code(drawn.cell, drawn.state), _code(cell, state)):
         raise UnravelledError("The stitches come undone on the way to rest.")
     lines = centre_lines(cell, state, cell.rows, cell.wales)
+    course, wale = float(state[-2]), float(state[-1])
+    open_places = holes(lines, cell.wales * course, cell.rows * wale, yarn.radius_mm)
+    folded = is_folded(lines, cell.wales, course, wale)
     return RelaxedStitches(
         chart=whole,
         yarn=yarn,
         loop_lengths_mm=lengths,
         history=kind,
         friction=None if kind is StitchHistory.AGITATED else friction,
-        cell_course_mm=float(state[-2]),
-        cell_wale_mm=float(state[-1]),
+        cell_course_mm=course,
+        cell_wale_mm=wale,
         thickness_mm=float(np.ptp(lines[..., 2])) + 2.0 * yarn.radius_mm,
+        folded=folded,
+        hole_share=open_places.share,
+        eyelet_mm2=open_places.eyelet_mm2(_yarn_overs(graph)),
         energy_n_mm=minimum.terms.energy / cell.stitches,
         bending_share=minimum.terms.rod / minimum.terms.energy,
         crossings=drawn.exact,
@@ -203,7 +226,14 @@ def relax_stitches(
         seconds=time.process_time() - clock,
         converged=minimum.converged,
         centre_lines=lines,
+        notes=(FOLDED, CAUTION) if folded else (CAUTION,),
     )
+
+
+def _yarn_overs(graph: StitchGraph) -> int:
+    """How many runs of neighbouring yarn overs a repeat has."""
+    over = (graph.act == YarnAct.OVER) & (np.diff(graph.first, axis=1) == 0)
+    return int((over & ~np.roll(over, 1, axis=1)).sum())
 
 
 def _at_rest(
@@ -211,14 +241,15 @@ def _at_rest(
     cancelled: Cancelled | None,
 ) -> tuple[StitchEnergy, Minimum]:  # fmt: skip
     """The state after a history, from that under the take-down."""
-    pull = energy.pull_n
-    if history is StitchHistory.AGITATED:
-        pull = (0.0, 0.0)
+    stitches, pull = energy.cell.stitches, (0.0, 0.0)
+    if history is StitchHistory.KNITTED:
+        pull = pulls_n(stitches, energy.mean_loop_mm, TAKE_DOWN_N_PER_MM)
     if history is StitchHistory.BLOCKED:
-        both = BLOCKING_N_PER_MM * energy.cell.stitches
+        both = BLOCKING_N_PER_MM * stitches
         pull = both * float(state[-1]), both * float(state[-2])
     energy = replace(energy, pull_n=pull, spacing_per_bending=SPACING_PER_BENDING)
-    minimum = minimise(energy, state, tension=tension, options=_SETTLED, cancelled=cancelled)
+    options = _SETTLED if history is StitchHistory.AGITATED else _PULLED
+    minimum = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
     if history is StitchHistory.AGITATED:
         return energy, minimum
     rubbing = Rubbing(np.zeros(0, np.int64), np.zeros((0, 2)))

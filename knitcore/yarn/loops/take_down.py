@@ -15,7 +15,7 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError
 from knitcore.chart.stitch_graph import StitchGraph
-from knitcore.yarn.loops.drawn_yarn import DrawnYarn, drawn_yarn
+from knitcore.yarn.loops.drawn_yarn import Drawing, DrawnYarn
 from knitcore.yarn.loops.stitch_energy import StitchEnergy
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.conventions import Convention
@@ -25,7 +25,7 @@ from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
 from knitcore.yarn.solve.topology import clearance_at
 
-PULLS_N_PER_MM = 0.03, 0.01
+_PULLS_N_PER_MM = 0.01, 0.003
 """Take-down along the wale; the next is tried where the yarn locks."""
 ACROSS = 1.0
 """Pull along the course over that along the wale: the rollers keep the cloth spread."""
@@ -36,12 +36,13 @@ _SCALES = tuple(0.45 * 1.2**k for k in range(8))
 _LAYER_RADII = 1.8
 _ROOM = 1.1
 """Least distance of strands in the first shape, in diameters of the core."""
-_STEP = 0.2
-"""First part of the way, in logarithms of the length, and least that is tried."""
-_LEAST_STEP = 0.015
+_STEP = 0.25
+"""Longest part of the way, in logarithms of the length."""
+_LAST_STEP, _LEAST_STEP = 0.08, 0.015
+"""Parts that are not halved towards the end, and the least that is tried after a lock."""
 _OVERLONG = 0.02
-"""Excess of a row's yarn, in loop lengths, with which a stage still counts."""
-_STAGE = Options(tolerance=1e-3, slack=1e-2, iterations=6)
+"""Excess of a row's yarn, in loop lengths, with which the last stage still counts."""
+_STAGE = Options(tolerance=1e-2, slack=1e-2, iterations=5, leaves_saddles=False)
 GRID = SplineGrid(16, 3)
 """Resolution of the relaxed shape, if it is fine enough."""
 _UNEVEN = 2.0
@@ -58,9 +59,10 @@ def room_for_yarn(graph: StitchGraph, yarn: YarnModel, loop_length_mm: float) ->
     ConvergenceError
         If it cannot be drawn.
     """
+    drawing = Drawing(graph)
     for scale in _SCALES:
         size = scale * loop_length_mm
-        drawn = drawn_yarn(graph, size, size, _LAYER_RADII * yarn.radius_mm)
+        drawn = drawing(size, size, _LAYER_RADII * yarn.radius_mm)
         energy = StitchEnergy(drawn.cell, yarn, drawn.loop_lengths_mm, Convention.PUBLISHED)
         if clearance_at(energy, drawn.state).min_distance_mm > 2.0 * _ROOM * yarn.core_radius_mm:
             return drawn
@@ -90,7 +92,7 @@ class TakeDown:
         ConvergenceError
             If the yarn locks on the way whatever the pull.
         """
-        for pull in PULLS_N_PER_MM:
+        for pull in _PULLS_N_PER_MM:
             try:
                 return self._drawn_in(drawn, pull)
             except (ConvergenceError, UnravelledError):
@@ -102,15 +104,15 @@ class TakeDown:
 
     def energy(self, cell: YarnCell, lengths_mm: Array, pull_n_per_mm: float) -> StitchEnergy:
         """The energy under a take-down; long loops are soft, so that it pulls them less."""
-        larger = float(lengths_mm.mean() / self.goal_mm.mean())
-        force = pull_n_per_mm / larger**2 * cell.stitches * float(self.goal_mm.mean())
-        pulls = ACROSS * _WALE_PER_LOOP * force, _COURSE_PER_LOOP * force
+        loop_mm = float(self.goal_mm.mean())
+        larger = float(lengths_mm.mean()) / loop_mm
         samples = _UNEVEN * float(lengths_mm.max()) / (2.0 * self.yarn.core_radius_mm)
         per_span = int(np.clip(np.ceil(samples / cell.grid.controls), GRID.per_span, _MOST))
         sampled = replace(cell, grid=SplineGrid(cell.grid.controls, per_span))
         return StitchEnergy(
             sampled, self.yarn, lengths_mm, self.convention,
-            spacing_per_bending=STIFF_SPACING_PER_BENDING, pull_n=pulls,
+            spacing_per_bending=STIFF_SPACING_PER_BENDING,
+            pull_n=pulls_n(cell.stitches, loop_mm, pull_n_per_mm / larger**2),
         )  # fmt: skip
 
     def _drawn_in(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum]:
@@ -118,26 +120,45 @@ class TakeDown:
         whole = float(np.log(begin / self.goal_mm).max())
         energy = self.energy(drawn.cell, begin, pull)
         last = self._stage(energy, drawn.state, None)
-        done, step = 0.0, _STEP / whole
+        done, most = 0.0, _STEP
         while done < 1.0:
-            part = min(1.0, done + step)
+            left = whole * (1.0 - done)
+            step = min(left, most, max(0.5 * left, _LAST_STEP))
+            part = 1.0 if step == left else done + step / whole
             nearer = self.energy(energy.cell, begin ** (1.0 - part) * self.goal_mm**part, pull)
             try:
                 minimum = self._stage(nearer, last.state, last.tension)
+                if part == 1.0:
+                    check_length(nearer, minimum)
             except (ConvergenceError, UnravelledError):
-                step *= 0.5
-                if step * whole < _LEAST_STEP:
+                most = 0.5 * step
+                if most < _LEAST_STEP:
                     raise
                 continue
             energy, last, done = nearer, minimum, part
-            step = min(1.3 * step, _STEP / whole)
+            most = min(1.3 * most, _STEP)
         return energy, last
 
     def _stage(self, energy: StitchEnergy, state: Array, tension: Array | None) -> Minimum:
         minimum = minimise(energy, state, tension=tension, options=_STAGE, cancelled=self.cancelled)
-        lengths = minimum.terms.excess_mm / energy.cell.wales
-        if np.abs(lengths).max() > _OVERLONG * energy.mean_loop_mm:
-            raise ConvergenceError("too little yarn")
         if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
             raise ConvergenceError("cores overlap")
         return minimum
+
+
+def pulls_n(stitches: int, loop_mm: float, n_per_mm: float) -> tuple[float, float]:
+    """Forces of a take-down along the course and the wale, N times the stitches."""
+    force = n_per_mm * stitches * loop_mm
+    return ACROSS * _WALE_PER_LOOP * force, _COURSE_PER_LOOP * force
+
+
+def check_length(energy: StitchEnergy, minimum: Minimum) -> None:
+    """Refuse a state whose yarn has not its length.
+
+    Raises
+    ------
+    ConvergenceError
+    """
+    excess = np.abs(minimum.terms.excess_mm).max() / energy.cell.wales
+    if excess > _OVERLONG * energy.mean_loop_mm:
+        raise ConvergenceError("too little yarn")

@@ -294,8 +294,8 @@ class CellEnergy:
     ) -> Slope:  # fmt: skip
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
 
-        A sparse Hessian leaves out slides and friction, whose Hessians are dense. The gradients of
-        the constraints are left out unless ``lengths``: a large sheet's are mostly zeros.
+        A sparse Hessian leaves out slides, whose Hessians are dense. The gradients of the
+        constraints are left out unless ``lengths``: a large sheet's are mostly zeros.
         """
         layout, law = self.cell.layout, self.contact_law
         pressed = on_halves(
@@ -328,6 +328,10 @@ class CellEnergy:
             touching = touching_blocks(
                 at, state[-2], state[-1], pairs, layout, BLOCK, 2.0 * law.radius
             )
+            if self.sliding is not None:
+                touching |= touching_blocks(
+                    at, state[-2], state[-1], self.sliding.pairs, layout, BLOCK, np.inf
+                )
             matrix = empty_tiles(touching, BLOCK, size - 2)
         else:
             matrix = one_tile(size)
@@ -335,6 +339,8 @@ class CellEnergy:
             curve, state[-2], state[-1], pairs, start, layout, law, matrix.tiles, matrix.where
         )
         scatter_local(local, position, position_speed, layout, matrix.tiles, matrix.where, sizes)
+        if self.sliding is not None:
+            friction_hessian(*rubbing, matrix.tiles, matrix.where, sizes)
         sizes[:, -2:] = 0.5 * (sizes[:, -2:] + sizes[:, -2:].T)
         if sparse:
             return Slope(gradient, rows, sparse=SparseHessian(touching, matrix, sizes))
@@ -343,8 +349,6 @@ class CellEnergy:
         whole[:, -2:] = sizes.T
         for pull, slide in zip(tension[beside + len(self.held) :], self.slides, strict=True):
             whole += pull * slide.hessian()
-        if self.sliding is not None:
-            friction_hessian(*rubbing, whole)
         return Slope(gradient, rows, whole)
 
     def along_yarn(

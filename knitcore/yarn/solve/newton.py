@@ -88,6 +88,8 @@ class Options:
     side : of the first saddle to which it is left, 1 or -1.
     mended : whether steps of a large cell are mended so that the yarn keeps its length; a
         straight step stretches it, and would have to be short. Small cells do without.
+    leaves_saddles : whether the search goes on from a saddle; on the way to another shape it need
+        not.
     """
 
     pair_cap: float = 0.3
@@ -99,6 +101,7 @@ class Options:
     damping: float = 1.0
     side: float = 1.0
     mended: bool = True
+    leaves_saddles: bool = True
 
 
 TIGHT = Options(tolerance=1e-10, slack=1e-9)
@@ -192,8 +195,7 @@ class _Descent:
         self.held, self.goal = held, goal
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
         self.damping = options.damping * self.first_damping
-        dense_only = energy.slides or energy.sliding is not None
-        self.sparse = energy.cell.stitches >= SPARSE_FROM and not dense_only
+        self.sparse = energy.cell.stitches >= SPARSE_FROM and not energy.slides
         self.single = self.sparse
         self.dissection = Dissection()
         self.room = Room()
@@ -257,7 +259,7 @@ class _Descent:
             and predicted < self.options.tolerance * abs(terms.energy)
             and np.abs(terms.excess_mm).max() < slack * energy.mean_loop_mm
         )
-        if self.converged:
+        if self.converged and self.options.leaves_saddles:
             least = (_STABLE_LARGE if self.sparse else _STABLE) * self.first_damping
             self.stable = damping <= least or system.factorise(least)
             if not self.stable:

@@ -166,7 +166,7 @@ def relax_splines(
     energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
     if explored != grid:
         energy = replace(energy, spacing_per_bending=STIFF_SPACING_PER_BENDING)
-    _compile()
+    compile_kernels()
     clock = time.process_time()
     enough = TIGHT if explored == grid else replace(TIGHT, tolerance=_EXPLORED, slack=_EXPLORED)
     search = Search(energy, enough, cancelled)
@@ -387,7 +387,7 @@ def loop_lengths(
 
 
 @cache
-def _compile() -> None:
+def compile_kernels() -> None:
     """Compile (or load) the kernels once, so that the times of solves do not include it."""
     yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1)
     cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(8, 4))

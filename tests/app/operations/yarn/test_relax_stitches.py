@@ -14,6 +14,8 @@ def test_a_mesh_is_the_same_on_the_command_line_and_over_rest(client: TestClient
     assert shape["converged"]
     assert shape["pattern"] == MESH
     assert shape["thickness_mm"] > 2.5
+    assert not shape["folded"]
+    assert shape["eyelet_mm2"] > 0 < shape["hole_share"] < 0.5
     assert "history" in shape["notes"][0]
     body = {"chart": MESH, "material": "acrylic", "centre_lines": True}
     answer = post(client, "relax-stitches", body)

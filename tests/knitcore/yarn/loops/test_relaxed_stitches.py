@@ -38,6 +38,9 @@ def test_mirror_images_rest_alike(tmp_path: Path) -> None:
     left, right = (at_rest(text, StitchHistory.BLOCKED) for text in ("O/;KK", "\\O;KK"))
     assert np.allclose(sizes(left), sizes(right), rtol=1e-2)
     assert (left.crossings, left.layered) == (16, 2)
+    assert np.isclose(left.hole_share, right.hole_share, rtol=5e-2)
+    assert left.eyelet_mm2 is not None
+    assert not left.folded
     right.write(tmp_path / "mesh.vtu")
     assert len(meshio.read(tmp_path / "mesh.vtu").points) == right.centre_lines[..., 0].size
 
@@ -47,6 +50,10 @@ def test_blocked_cloth_rests_flatter_than_agitated_cloth() -> None:
     blocked, agitated = (at_rest("O/;KK", of) for of in ("blocked", "agitated"))
     assert blocked.thickness_mm < agitated.thickness_mm
     assert np.prod(sizes(blocked)) > np.prod(sizes(agitated))
+
+
+def test_stitches_without_yarn_overs_have_no_eyelets() -> None:
+    assert at_rest("VK;KK").eyelet_mm2 is None
 
 
 @pytest.mark.slow

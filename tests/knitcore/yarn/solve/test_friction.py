@@ -63,10 +63,13 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
     start = np.zeros(len(curve) + 1, np.int64)
     none = np.zeros(energy.constraints)
 
-    def derivatives(y, hessian):
-        return rubbing.derivatives(y, rubbing.curve(y), empty, start, none, hessian=hessian)
+    def derivatives(y, hessian, sparse=False):
+        curve = rubbing.curve(y)
+        return rubbing.derivatives(y, curve, empty, start, none, hessian=hessian, sparse=sparse)
 
     slope = derivatives(state, hessian=True)
+    tiles = derivatives(state, hessian=True, sparse=True).sparse
+    np.testing.assert_allclose(tiles.times(state), slope.hessian @ state, rtol=1e-9, atol=1e-9)
     h = 1e-6
     for direction in (*rng.standard_normal((2, len(state))), *np.eye(len(state))[-2:]):
         on, back = state + h * direction, state - h * direction
