@@ -109,7 +109,7 @@ def loop_lines_mm(graph: StitchGraph, stitch_mm: Array, layer_mm: float) -> Arra
     lines = []
     for row in range(graph.rows):
         knots, part = paths.knots(row)
-        near = np.arange(row - 1, row + reach)
+        near = list(range(row - 1, row + reach))
         knots[:, 1] = np.interp(knots[:, 1], [paths.height(other) for other in near], near)
         moved = [
             scipy.ndimage.map_coordinates(move, knots[:, 1::-1].T, order=1, mode="grid-wrap")
@@ -183,7 +183,7 @@ def _at_rest(
     weight = np.repeat([stiffness, other], [count, wales.shape[1]])
     goal = weight * np.concatenate([steps, rises])
     pull = np.bincount(first, goal, count) - np.bincount(last, goal, count)
-    links = scipy.sparse.coo_matrix((weight, (first, last)), shape=(count, count))
-    laplace = scipy.sparse.csgraph.laplacian(links + links.T)
-    held = laplace + _PLACE * scipy.sparse.identity(count)
-    return np.asarray(scipy.sparse.linalg.spsolve(held.tocsc(), pull))
+    links = scipy.sparse.csc_matrix((weight, (first, last)), shape=(count, count))
+    links = links + links.T
+    stays = scipy.sparse.diags(np.asarray(links.sum(axis=1)).ravel() + _PLACE)
+    return np.asarray(scipy.sparse.linalg.spsolve(scipy.sparse.csc_matrix(stays - links), pull))
