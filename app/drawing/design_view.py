@@ -11,9 +11,9 @@ from knitcore.base.errors import InputError
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.draw.instances import MAX_STITCHES
 from knitcore.draw.lattice import flat_lattice
+from knitcore.draw.looped import shapes_of
 from knitcore.draw.placing import PlacedStitches, carried, lying, unstretched
 from knitcore.draw.rectangles import extensibility_rectangles, stitch_labels
-from knitcore.draw.stitches import stitch_shapes
 from knitcore.formats.designs.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
@@ -21,13 +21,13 @@ from knitcore.materials import Material
 from ..context import Context
 from ..requests.base import RequestModel
 from ..requests.charts import (
-    ChartInput,
+    AnyChartInput,
     Column,
     MaterialName,
     OutlineInput,
     Row,
     size_of_chart,
-    to_chart,
+    to_stitches,
 )
 from ..requests.fabrics import Gauged
 from .computed import PosedView, StretchView
@@ -73,7 +73,7 @@ class Focus(RequestModel):
 class ViewRequest(Gauged):
     """A design and how to show it."""
 
-    chart: ChartInput
+    chart: AnyChartInput
     material: MaterialName
     outline: OutlineInput = None
     colour: Colour = Colour.FABRIC
@@ -122,17 +122,20 @@ def build_scene(
 ) -> FabricScene:
     """The scene of a design: flat, in a shape of its own, or at one step of its stretch test.
 
+    Stitches other than knit and purl have the colours of the purl map.
+
     Raises
     ------
     InputError
         If the test or the shape is not known any more, or belongs to another chart.
     """
-    chart, material = to_chart(request.chart), context.material(request.material)
+    stitches, material = to_stitches(request.chart), context.material(request.material)
+    chart = stitches if isinstance(stitches, StitchChart) else stitches.plain
     drawn = _drawn(request, chart)
     stretch = computed if isinstance(computed, StretchView) else None
     posed = _posed(request, computed, chart)
     step = _checked_step(request, stretch, chart)
-    shapes = stitch_shapes(chart, material, folded=posed is None)
+    shapes = shapes_of(stitches, material, folded=posed is None)
     if (size := request.relaxed_size) is not None:
         shapes = shapes.resized(size, drawn)
     placement, room = unstretched(shapes), None

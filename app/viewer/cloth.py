@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
-from knitcore.draw.instances import quaternions, stitch_meshes, tube_sizes
+from knitcore.draw.instances import quaternions, rounded_tubes, stitch_meshes, tube_sizes
+from knitcore.draw.placing import placed_lines
 from knitcore.draw.stitches import StitchShapes
+from knitcore.draw.tubes import resampled, tube_faces
 
 from ..drawing.colours import linear
 from ..drawing.fabric import FabricScene
@@ -25,6 +27,12 @@ RESIZE = np.array([0.06, 0.06, 0.06, 0.02])
 """Logarithms of the changes of :func:`tube_sizes` up to which a tube is scaled, not drawn anew."""
 FINEST = 256
 """Steps to a millimetre in which places and sizes are sent, as in frontend/viser/yarn.js."""
+MOST_SHAPES = 500
+"""Shapes that have nodes of their own: a browser draws one after the other."""
+WHOLE = b"whole"
+"""Beginning of the key of a mesh of many stitches."""
+BURIED = 0.5
+"""Darkening of yarn at the back of stitches that are all different, 0 to 1."""
 BRIGHTEST = 63 / 64
 """Full light as it is sent: less than a step, since the fraction of a step holds the light."""
 
@@ -70,6 +78,9 @@ class ShownStitches:
         whether tubes are scaled more than they should be.
         """
         shapes = _distinct(scene.shapes)
+        if len(shapes.lines) > MOST_SHAPES:
+            self._lay_whole(scene, middle_mm, level)
+            return False
         sizes = tube_sizes(shapes, scene.placement)
         cells = shapes.index.ravel()
         there = np.arange(len(cells)) if scene.drawn is None else np.flatnonzero(scene.drawn)
@@ -102,6 +113,39 @@ class ShownStitches:
                     node.handle.remove()
         self._nodes = kept
         return bool(flat) and not exact
+
+    def _lay_whole(self, scene: FabricScene, middle_mm: Array, level: tuple[int, int]) -> None:
+        """Show stitches that are all different: a mesh for each colour, drawn once."""
+        points, sides = level
+        drawn = np.ones(scene.shapes.index.shape, bool) if scene.drawn is None else scene.drawn
+        lines = resampled(placed_lines(scene.shapes, scene.placement)[drawn], points)
+        lines[..., :2] -= middle_mm
+        tubes = rounded_tubes(lines, scene.shapes.yarn_radius_mm, sides)
+        low, high = np.percentile(tubes[..., 2], [2, 98])
+        light = 1.0 - BURIED * np.clip((high - tubes[..., 2]) / max(high - low, 1e-6), 0.0, 1.0)
+        colours, own = np.unique(linear(scene.colours[drawn]), axis=0, return_inverse=True)
+        nodes: dict[bytes, _Node] = {}
+        with self._server.atomic():
+            for number, colour in enumerate(colours):
+                some = own.ravel() == number
+                tube, count = tube_faces(points + 2, sides), tubes.shape[1]
+                faces = tube + count * np.arange(some.sum(), dtype=np.uint32)[:, None, None]
+                nodes[WHOLE + colour.tobytes()] = _Node(
+                    self._made_of(
+                        _lit(tubes[some].reshape(-1, 3), light[some].ravel()),
+                        faces.reshape(-1, 3),
+                        {
+                            "batched_positions": np.zeros((1, 3), np.float32),
+                            "batched_scales": np.ones((1, 3), np.float32),
+                            "batched_wxyzs": np.array([[1, 0, 0, 0]], np.float32),
+                            "batched_colors": colour[None],
+                        },
+                    ),
+                    np.full(4, np.inf),
+                )
+            for node in self._nodes.values():
+                node.handle.remove()
+        self._nodes = nodes
 
     def _made_of(
         self, vertices: NDArray[np.float32], faces: NDArray[np.uint32], copies: dict[str, Any]

@@ -14,7 +14,7 @@ from ..context import Context, Supplies
 from ..drawing.computed import PosedView, StretchView
 from ..drawing.design_view import StretchStep, ViewRequest, build_scene
 from ..drawing.fabric import MAX_SOLID, FabricScene, solid_glb
-from ..requests.charts import to_chart
+from ..requests.charts import to_stitches
 from ..service.problems import ServiceError
 from .incoming import WantedPicture
 from .relay import with_scripts
@@ -191,7 +191,8 @@ def _scenes(
 
 
 def _check_size(request: SharedViewRequest, most: int) -> None:
-    stitches = to_chart(request.chart).stitches
+    chart = to_stitches(request.chart)
+    stitches = chart.rows * chart.columns
     if request.outline is not None:
         stitches = int(outline_marks(request.outline).sum())
     check_stitches(stitches, most)

@@ -81,18 +81,29 @@ def stitch_meshes(
     numbers = np.arange(len(shapes.lines)) if some is None else np.asarray(some, dtype=int)
     sizes = tube_sizes(shapes, placement)[numbers, :3]
     lines = resampled(shapes.lines[numbers], points) * sizes[:, None]
-    lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
-    lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
-    tubes = tube_vertices(lines, shapes.yarn_radius_mm, sides)
-    ends = [_tips(lines[:, at], lines[:, by], shapes.yarn_radius_mm) for at, by in ENDS]
-    first, last = (np.repeat(tip[:, None], sides, axis=1).astype(np.float32) for tip in ends)
+    vertices = rounded_tubes(lines, shapes.yarn_radius_mm, sides)
     light = occlusion(shapes, points, sides, some)[:, [0, *range(points), points - 1]]
-    vertices = np.concatenate([first, tubes, last], axis=1)
     return StitchMeshes(
         vertices=vertices,
         light=light.reshape(vertices.shape[:2]).astype(np.float32),
         faces=tube_faces(points + 2, sides),
     )
+
+
+def rounded_tubes(lines: Array, radius_mm: float, sides: int) -> Floats:
+    """Tubes around lines (n, points, 3) of successive stitches, with a ring more at each end.
+
+    Returns
+    -------
+    (n, (points + 2) * sides, 3), ring by ring; successive tubes overlap.
+    """
+    lines, points = lines.copy(), lines.shape[1]
+    lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
+    lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
+    tubes = tube_vertices(lines, radius_mm, sides)
+    ends = [_tips(lines[:, at], lines[:, by], radius_mm) for at, by in ENDS]
+    first, last = (np.repeat(tip[:, None], sides, axis=1).astype(np.float32) for tip in ends)
+    return np.concatenate([first, tubes, last], axis=1)
 
 
 def _tips(end: Array, before: Array, radius_mm: float) -> Array:

@@ -115,15 +115,25 @@ def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True
     InputError
         If the material lacks one of the four fabrics.
     """
-    fabrics = fabric_lines(material)
-    shares = np.bincount(quarter_phases(chart).ravel(), minlength=len(PHASES))
-    radius = FULLNESS * 0.5 * float(shares @ fabrics.strand_mm / shares.sum())
+    fabrics, radius = fabric_lines(material), yarn_radius_mm(chart, material)
     stored = _stored_repeat(chart, material) if folded else None
     if stored is not None:
         return _of_stored(chart, material, stored, radius)
     lines, index = _of_quarters(chart, fabrics)
     lattice = (resting_lattice if folded else flat_lattice)(chart, material)
     return StitchShapes(lines, index, lattice, radius, fabrics.source)
+
+
+def yarn_radius_mm(chart: StitchChart, material: Material) -> float:
+    """About half of the distance that neighbouring strands of a chart keep.
+
+    Raises
+    ------
+    InputError
+        If the material lacks one of the four fabrics.
+    """
+    shares = np.bincount(quarter_phases(chart).ravel(), minlength=len(PHASES))
+    return FULLNESS * 0.5 * float(shares @ fabric_lines(material).strand_mm / shares.sum())
 
 
 # -- a repeat that was relaxed -----------------------------------------------------------------

@@ -41,10 +41,28 @@ def _rows(draw: st.DrawFn, columns: int, allowed: list[int]) -> list[int]:
 
 @st.composite
 def symbol_charts(
-    draw: st.DrawFn, *, most_rows: int = 4, most_columns: int = 9, turned: bool = True
+    draw: st.DrawFn,
+    *,
+    most_rows: int = 4,
+    most_columns: int = 9,
+    turned: bool = True,
+    drawn: bool = False,
 ) -> SymbolChart:
-    """Charts of any stitches; without ``turned`` none is twisted."""
-    allowed = [p for p in EVERY if turned or not any(s.turn for s in STITCHES[p].sites)]
+    """Charts of any stitches.
+
+    Parameters
+    ----------
+    turned : without it none is twisted.
+    drawn : only stitches whose yarn is drawn: none is twisted and knitted together with others.
+    """
+    allowed = [
+        place
+        for place in EVERY
+        if not any(
+            site.turn and (not turned or (drawn and len(site.sources) > 1))
+            for site in STITCHES[place].sites
+        )
+    ]
     columns = draw(st.integers(1, most_columns))
     rows = [draw(_rows(columns, allowed)) for _ in range(draw(st.integers(1, most_rows)))]
     top = draw(st.lists(st.sampled_from([0, 1]), min_size=columns, max_size=columns))

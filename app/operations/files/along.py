@@ -4,14 +4,17 @@ from pydantic import Field
 
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import check_stitches
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.formats.designs.design_file import check_bare
 from knitcore.formats.designs.layout import DesignLayout, piece_of
 from knitcore.formats.write.sheets.knit_along import knit_along as worked_out
+from knitcore.garment.piece import Piece
 from knitcore.machine.profile import machine_of
 from knitcore.machine.setting import setting_of
 
 from ...context import Context
 from ...requests.base import RequestModel, ResultModel
-from ...requests.charts import ChartInput, MaterialName, to_chart
+from ...requests.charts import AnyChartInput, MaterialName, to_stitches
 from ..registry import Command, Operation
 from .machines import machine_text
 
@@ -22,7 +25,7 @@ MAX_STITCHES = 250_000
 class KnitAlongRequest(DesignLayout, RequestModel):
     """A chart and how it is knitted: by hand, if no home machine is named."""
 
-    chart: ChartInput
+    chart: AnyChartInput
     construction: Construction = Field(
         Construction.FLAT, description="Flat or in the round; on a machine always flat."
     )
@@ -79,10 +82,14 @@ def knit_along(request: KnitAlongRequest, context: Context) -> KnitAlongResult:
     InputError
         If the chart is too large here, or cannot be worked in this way.
     """
-    chart = to_chart(request.chart)
+    chart = to_stitches(request.chart)
     if not context.local:
-        check_stitches(chart.stitches, MAX_STITCHES, instead=", or the command line")
-    piece = piece_of(chart, request)
+        check_stitches(chart.rows * chart.columns, MAX_STITCHES, instead=", or the command line")
+    if isinstance(chart, SymbolChart):
+        check_bare(request)
+        piece: Piece | SymbolChart = chart
+    else:
+        piece = piece_of(chart, request)
     machine = None if request.machine is None else machine_of(request.machine)
     rows = worked_out(
         piece,
@@ -92,7 +99,7 @@ def knit_along(request: KnitAlongRequest, context: Context) -> KnitAlongResult:
         from_row=request.from_row,
     )
     notes = list(rows.notes)
-    if machine is not None and request.material is not None:
+    if machine is not None and request.material is not None and isinstance(piece, Piece):
         notes.insert(0, setting_of(piece, machine, context.material(request.material)).note)
     return KnitAlongResult.of(rows, notes=notes)
 

@@ -183,11 +183,11 @@ def key_height(piece: Piece, style: ChartStyle) -> float:
 
 def _more_stitches(style: ChartStyle) -> float:
     """Room that the stitches of the key take beyond two lines."""
-    kinds = len(_kinds(style)[:MAX_KINDS])
+    kinds = len(kinds_of(style)[:MAX_KINDS])
     return max((kinds if kinds <= KINDS_WITH_NAMES else -(-kinds // 2)) - 2, 0) * STITCH_LINE_MM
 
 
-def _kinds(style: ChartStyle) -> list[StitchType]:
+def kinds_of(style: ChartStyle) -> list[StitchType]:
     """Kinds of stitches of a chart that has others than knits and purls."""
     if style.stitches is None:
         return []
@@ -214,7 +214,7 @@ def has_repeat(chart: StitchChart | SymbolChart) -> bool:
 
 def _stitch_lines(style: ChartStyle, y: float) -> Iterator[Shape]:
     """A line for each kind of stitch; many stand in two columns, without their names."""
-    kinds = _kinds(style)
+    kinds = kinds_of(style)
     in_full = len(kinds) <= KINDS_WITH_NAMES
     for index, stitch in enumerate(kinds[:MAX_KINDS]):
         row, column = (index, 0) if in_full else divmod(index, 2)

@@ -32,7 +32,7 @@ from knitcore.formats.write.sheets.card_sheet import card_pages
 from knitcore.formats.write.sheets.plan_sheet import plan_pages
 from knitcore.formats.write.stitch_values import write_csv, write_vtu
 from knitcore.formats.write.written_pattern import write_rows
-from knitcore.formats.write.yarn_mesh import mesh_file, yarn_mesh
+from knitcore.formats.write.yarn_mesh import looped_mesh, mesh_file, yarn_mesh
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import YarnUse, yarn_use
 from knitcore.machine.home.ayab import ayab_picture
@@ -45,6 +45,8 @@ from knitcore.machine.setting import MachineSetting, setting_of
 from knitcore.machine.stitch_program import check_first_row
 from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
+from knitcore.prediction.predict import predict
+from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.size import RelaxedSize
 
 
@@ -357,17 +359,46 @@ def _punch_card_text(piece: Piece, _: Material, options: ExportOptions) -> Expor
     return ExportedFile(ExportKind.PUNCH_CARD_TEXT, card.text.encode(), *_TXT, card.notes)
 
 
-def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
-    style = _style(piece, material, options)
-    words = _yarn_words(piece, material, options)
-    return design_report(piece, material, options.name, style, options.layout.regions, words)
+def _report(chart: Piece | SymbolChart, material: Material, options: ExportOptions) -> bytes:
+    piece, style, prediction = _shown(chart, material, options)
+    words = _yarn_words(_counted(chart), material, options)
+    regions = options.layout.regions
+    return design_report(piece, material, options.name, style, regions, words, prediction)
 
 
-def _pattern(piece: Piece, material: Material, options: ExportOptions) -> tuple[Page, ...]:
-    style = _style(piece, material, options)
-    facts = _yarn_facts(piece, material, options)
-    words = _yarn_words(piece, material, options)
-    return pattern_pages(piece, material, style, facts, options.photo, words)
+def _pattern(
+    chart: Piece | SymbolChart, material: Material, options: ExportOptions
+) -> tuple[Page, ...]:
+    piece, style, prediction = _shown(chart, material, options)
+    facts = _yarn_facts(_counted(chart), material, options)
+    words = _yarn_words(_counted(chart), material, options)
+    return pattern_pages(piece, material, style, facts, options.photo, words, prediction)
+
+
+def _shown(
+    chart: Piece | SymbolChart, material: Material, options: ExportOptions
+) -> tuple[Piece, ChartStyle, Prediction | None]:
+    """A piece, how it is drawn, and its prediction if it is no piece of knits and purls.
+
+    A chart of other stitches is the piece of its purl map, as large as it is with all of them.
+    """
+    if isinstance(chart, Piece):
+        return chart, _style(chart, material, options), None
+    prediction = predict(chart, material, options.gauge)
+    size = RelaxedSize(prediction.relaxed_course_mm, prediction.relaxed_wale_mm)
+    piece = replace(Piece.plain(chart.plain), gauge=size)
+    return piece, replace(_style(piece, material, options), stitches=chart), prediction
+
+
+def _counted(chart: Piece | SymbolChart) -> Piece:
+    """The piece whose loops are counted for the yarn: every stitch as a knit or a purl."""
+    return chart if isinstance(chart, Piece) else Piece.plain(chart.plain)
+
+
+def _solid(chart: Piece | SymbolChart, material: Material, scale: float, kind: str) -> bytes:
+    if isinstance(chart, Piece):
+        return mesh_file(yarn_mesh(chart, material), scale, kind)
+    return mesh_file(looped_mesh(chart, material), scale, kind)
 
 
 def _knitspeak(chart: Piece | SymbolChart, _: Material, options: ExportOptions) -> str:
@@ -486,17 +517,27 @@ _BUILT_IN = (
         ExportKind.SVG,
         *_SVG,
         lambda p, m, o: chart_svg(p, _style(p, m, o)),
-        write_stitches=lambda c, m, o: chart_svg(c, _style(Piece.plain(c.plain), m, o)),
+        write_stitches=lambda c, m, o: chart_svg(c, _shown(c, m, o)[1]),
     ),
     Exporter(
         ExportKind.PDF,
         *_PDF,
         lambda p, m, o: chart_pdf(p, _style(p, m, o)),
-        write_stitches=lambda c, m, o: chart_pdf(c, _style(Piece.plain(c.plain), m, o)),
+        write_stitches=lambda c, m, o: chart_pdf(c, _shown(c, m, o)[1]),
     ),
-    Exporter(ExportKind.PATTERN, *_PDF, lambda p, m, o: to_pdf(_pattern(p, m, o), o.name)),
-    Exporter(ExportKind.PATTERN_SVG, *_SVG, lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name)),
-    Exporter(ExportKind.REPORT, *_PDF, _report),
+    Exporter(
+        ExportKind.PATTERN,
+        *_PDF,
+        lambda p, m, o: to_pdf(_pattern(p, m, o), o.name),
+        write_stitches=lambda c, m, o: to_pdf(_pattern(c, m, o), o.name),
+    ),
+    Exporter(
+        ExportKind.PATTERN_SVG,
+        *_SVG,
+        lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name),
+        write_stitches=lambda c, m, o: to_long_svg(_pattern(c, m, o), o.name),
+    ),
+    Exporter(ExportKind.REPORT, *_PDF, _report, write_stitches=_report),
     Exporter(ExportKind.HAND_PLAN, *_PDF, _hand_plan),
     Exporter(ExportKind.HAND_PLAN_TEXT, *_TXT, _hand_plan_text),
     Exporter(ExportKind.AYAB, ".png", "image/png", _ayab),
@@ -510,16 +551,18 @@ _BUILT_IN = (
     Exporter(
         ExportKind.GLB,
         *_GLB,
-        lambda p, m, _: mesh_file(yarn_mesh(p, m), 0.001, "glb"),
+        lambda p, m, _: _solid(p, m, 0.001, "glb"),
         _DRAWN,
         holds_yarns=False,
+        write_stitches=lambda c, m, _: _solid(c, m, 0.001, "glb"),
     ),
     Exporter(
         ExportKind.STL,
         *_STL,
-        lambda p, m, _: mesh_file(yarn_mesh(p, m), 1.0, "stl"),
+        lambda p, m, _: _solid(p, m, 1.0, "stl"),
         _DRAWN,
         holds_yarns=False,
+        write_stitches=lambda c, m, _: _solid(c, m, 1.0, "stl"),
     ),
     Exporter(ExportKind.VTU, ".vtu", "application/xml", lambda p, m, _: write_vtu(p, m), _LOCAL),
     Exporter(ExportKind.CSV, *_CSV, lambda p, m, _: write_csv(p, m), _LOCAL),

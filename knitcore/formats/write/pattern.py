@@ -17,7 +17,14 @@ from knitcore.chart.fabric import Direction
 from knitcore.chart.row_sides import Construction
 from knitcore.draw.laid_out import SizeAtRest, laid_corners_mm, size_at_rest
 from knitcore.formats.write.chart_drawing import chart_pages
-from knitcore.formats.write.chart_key import ChartStyle, RegionMark, is_coloured, shortened, tinted
+from knitcore.formats.write.chart_key import (
+    ChartStyle,
+    RegionMark,
+    is_coloured,
+    kinds_of,
+    shortened,
+    tinted,
+)
 from knitcore.formats.write.drawn_page import Page
 from knitcore.formats.write.sheets.flow import Flow, numbered
 from knitcore.formats.write.written_pattern import written_sections
@@ -73,6 +80,10 @@ _RESTS_ON: dict[Source | None, str] = {
         "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "
         "and seed of this yarn, corrected by simulations of other charts."
     ),
+    Source.OTHER_STITCHES: (
+        "Size and stretch are computed from the knits and purls of this chart. Its other stitches "
+        "change the size as they did on knitted swatches; this chart was not knitted."
+    ),
 }
 """Basis of a prediction's numbers, in a knitter's words; None is for a piece with an outline."""
 
@@ -84,17 +95,19 @@ def pattern_pages(
     yarn_facts: Sequence[str] = (),
     photo: bytes | None = None,
     yarn_notes: Sequence[str] = (),
+    prediction: Prediction | None = None,
 ) -> tuple[Page, ...]:
     """The pattern as A4 pages.
 
     Parameters
     ----------
-    piece : what is knitted.
+    piece : what is knitted; the purl map of a chart of other stitches, which the style has.
     material : gives sizes and stretch.
     style : how it is worked, its title, note, regions and linked repeats.
     yarn_facts : of each yarn, such as its length.
     photo : a PNG picture of the cloth for the first page.
     yarn_notes : sentences about all yarns.
+    prediction : of a chart of other stitches.
 
     Raises
     ------
@@ -103,7 +116,7 @@ def pattern_pages(
         the piece cannot be worked in the round.
     """
     flow = Flow()
-    facts = _Facts.of(piece, material)
+    facts = _Facts.of(piece, material, prediction)
     flow.title(style.title or "Untitled")
     flow.text(f"{piece.shaped.stitches} stitches in {piece.chart.rows} rows; {facts.finished}.")
     if photo is not None:
@@ -117,12 +130,15 @@ def pattern_pages(
             flow.text(paragraph, bullet=True)
     _parts(flow, facts, parts)
     opening, sections = written_sections(
-        piece, style.construction, first_side=style.first_side, breaks=_breaks(piece, style.regions)
+        style.stitches or piece,
+        style.construction,
+        first_side=style.first_side,
+        breaks=_breaks(piece, style.regions),
     )
-    _abbreviations(flow, [*opening, *(line for lines in sections for line in lines)])
+    _abbreviations(flow, [*opening, *(line for lines in sections for line in lines)], style)
     _instructions(flow, piece, style, opening, sections)
     _finishing(flow, facts, style)
-    _evidence(flow, facts)
+    _evidence(flow, facts, style)
     written = flow.pages()
     plain = replace(style, note="")  # printed above
     pages = [*written, *chart_pages(piece, plain, first=len(written) + 1)]
@@ -146,9 +162,9 @@ class _Facts:
     sizes_mm: Array
 
     @classmethod
-    def of(cls, piece: Piece, material: Material) -> _Facts:
+    def of(cls, piece: Piece, material: Material, known: Prediction | None) -> _Facts:
         shaped = piece.shaped
-        prediction = predict(shaped.rectangle_inside(), material, piece.gauge)
+        prediction = known or predict(shaped.rectangle_inside(), material, piece.gauge)
         size = size_at_rest(shaped, material, prediction)
         own = prediction if piece.is_rectangle else None
         corners = laid_corners_mm(shaped, material, piece.gauge)
@@ -255,13 +271,17 @@ def _breaks(piece: Piece, regions: Sequence[RegionMark]) -> list[int]:
     return inner if len(inner) <= MAX_SECTIONS else []
 
 
-def _abbreviations(flow: Flow, lines: Sequence[str]) -> None:
+def _abbreviations(flow: Flow, lines: Sequence[str], style: ChartStyle) -> None:
     """List the abbreviations that the rows use."""
     words = {word for line in lines for word in re.findall(r"[A-Za-z]+\d?[a-z]*", line)}
     written = words | {re.sub(r"\d+$", "", word) for word in words}
     used = {short for short in _ABBREVIATIONS if {short, short.capitalize()} & written}
     flow.heading("Abbreviations")
-    explained = (f"{short}: {_ABBREVIATIONS[short]}" for short in _ABBREVIATIONS if short in used)
+    explained = [f"{short}: {_ABBREVIATIONS[short]}" for short in _ABBREVIATIONS if short in used]
+    faces = kinds_of(style)
+    backs = [kind.turned_over for kind in faces if style.construction is Construction.FLAT]
+    others = {kind.words: kind.name for kind in (*faces, *backs)}
+    explained += [f"{word}: {name}" for word, name in others.items() if word not in _ABBREVIATIONS]
     flow.text("; ".join(explained) + ". A number after k or p is a number of stitches.")
     if any("*" in line for line in lines):
         flow.text("Work the stitches after * once, then repeat them as often as stated.")
@@ -299,13 +319,15 @@ def _finishing(flow: Flow, facts: _Facts, style: ChartStyle) -> None:
         flow.text("In the round the width is the circumference.")
 
 
-def _evidence(flow: Flow, facts: _Facts) -> None:
+def _evidence(flow: Flow, facts: _Facts, style: ChartStyle) -> None:
     flow.heading("Where the numbers come from")
     prediction = facts.prediction
     source = None if prediction is None else prediction.provenance
     curls = prediction is not None and CURL in prediction.notes
+    notes = () if style.stitches is None or prediction is None else prediction.notes
     for sentence in (
         _RESTS_ON[source],
+        *(note for note in notes if note != CURL),
         *([CURLS] if curls else []),
         "The report of this design has all numbers, their intervals and methods.",
         "Knit a swatch. If its gauge differs from this pattern's, trust the swatch.",

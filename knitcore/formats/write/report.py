@@ -32,6 +32,7 @@ SOURCES = {
     Source.SWEPT: "simulated",
     Source.LEARNED: "estimated from simulations",
     Source.LEARNED_OF_SIZE: "estimated from simulations and a known size",
+    Source.OTHER_STITCHES: "estimated from its knits and purls, and from swatches of others",
 }
 """Bases of predictions in words, as on the page."""
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
@@ -46,6 +47,7 @@ LOCAL_ASSUMPTIONS = (
     "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
 )
 """Assumptions behind the numbers of a piece with an outline."""
+OF_KNITS_AND_PURLS = "Segments, maps and yarn are those of the chart's knits and purls."
 ASSUMPTIONS = "Method and assumptions"
 _LINE_CHARACTERS = 112
 _MAP_MM = (84.0, 62.0)
@@ -58,11 +60,13 @@ def design_report(
     style: ChartStyle,
     regions: Sequence[DesignRegion] = (),
     notes: Sequence[str] = (),
+    prediction: Prediction | None = None,
 ) -> bytes:
     """A PDF: mechanics, then the extensibility field if there are regions, then the chart.
 
     ``notes`` are added to the assumptions of the first page. A piece that is not a rectangle has no
-    modulus of its own; those of its regions are given.
+    modulus of its own; those of its regions are given. A chart of other stitches is given as the
+    piece of its purl map, with all of them in the style, and its ``prediction``.
 
     Raises
     ------
@@ -71,7 +75,10 @@ def design_report(
     """
     piece = Piece.of(chart)
     pages = []
-    prediction = predict(piece.shaped.rectangle_inside(), material, piece.gauge)
+    if prediction is None:
+        prediction = predict(piece.shaped.rectangle_inside(), material, piece.gauge)
+    else:
+        notes = *notes, OF_KNITS_AND_PURLS
     size = size_at_rest(piece.shaped, material, prediction)
     if piece.is_rectangle:
         shapes = [

@@ -7,6 +7,7 @@ not computed: lengths and contacts are those of the stitch cell and the yarn's d
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -17,9 +18,12 @@ from knitcore.base.arrays import Array, Codes, Mask, runs
 from knitcore.chart.fabric import Fabric
 from knitcore.chart.in_space import corners_of
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.cloth.space.surface import Surface, filled
 from knitcore.draw.laid_out import laid_corners_mm
-from knitcore.draw.tubes import TriangleMesh, tube_mesh
+from knitcore.draw.looped import shapes_of
+from knitcore.draw.placing import placed_lines, unstretched
+from knitcore.draw.tubes import TriangleMesh, resampled, tube_mesh
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
 from knitcore.prediction.predict import predict
@@ -90,6 +94,22 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     corners = np.pad(laid, ((0, 0), (0, 0), (0, 1)))
     lines = course_centre_lines(grid, corners, material, shown)
     return solid(lines, yarn_radius_mm(grid, material))
+
+
+def looped_mesh(chart: SymbolChart, material: Material) -> TriangleMesh:
+    """All rows of a chart of any stitches as closed tubes in mm, as they are knitted.
+
+    Raises
+    ------
+    InputError
+        As :func:`yarn_mesh`.
+    """
+    check_stitches(chart.rows * chart.columns, MAX_STITCHES)
+    shapes = shapes_of(chart, material)
+    shapes = replace(shapes, lines=resampled(shapes.lines, 2 * POINTS))
+    rows = placed_lines(shapes, unstretched(shapes))
+    lines = (np.append(row[:, :-1].reshape(-1, 3), row[-1, -1:], axis=0) for row in rows)
+    return solid(lines, shapes.yarn_radius_mm)
 
 
 def solid(lines: Iterable[Array], radius_mm: float) -> TriangleMesh:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from knitcore.base.arrays import Indices
 from knitcore.base.errors import InputError
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
+
+Value = TypeVar("Value")
 
 INNER = 0.14
 """Half the width of a new loop where it is pulled through others, in wales."""
@@ -81,28 +83,56 @@ class HeldLoops:
 
     def taken_by(self, row: int, column: int) -> YarnLoop:
         """The site that takes what a site hands up."""
-        copy, at = divmod(column, self.graph.columns)
-        taker = int(self.taker[row % self.graph.rows, at])
-        return YarnLoop(row + 1, taker + copy * self.graph.columns)
+        takers = self._takers[row % len(self._takers)]
+        copy, at = divmod(column, len(takers))
+        return YarnLoop(row + 1, takers[at] + copy * len(takers))
 
     def act(self, row: int, column: int) -> YarnAct:
         """The act of a site."""
-        return YarnAct(self.graph.act[row % self.graph.rows, column % self.graph.columns])
+        return self._at(self._acts, row, column)
 
     def turn(self, row: int, column: int) -> int:
         """Half turns of what a site takes."""
-        return int(self.graph.turn[row % self.graph.rows, column % self.graph.columns])
+        return self._at(self._turns, row, column)
 
     def behind(self, row: int, column: int) -> bool:
         """Tell whether a site's yarn comes from behind the loops that it holds."""
-        at = row % self.graph.rows, column % self.graph.columns
-        missed = self.graph.act[at] == YarnAct.MISS
-        return not (self.graph.front[at] if missed else self.graph.purl[at])
+        return self._at(self._behind, row, column)
+
+    @staticmethod
+    def _at(values: list[list[Value]], row: int, column: int) -> Value:
+        """A site's value in any copy of the repeat."""
+        line = values[row % len(values)]
+        return line[column % len(line)]
+
+    # Lists of Python's own numbers: single values of arrays take ten times as long.
+
+    @cached_property
+    def _acts(self) -> list[list[YarnAct]]:
+        return [[YarnAct(act) for act in row] for row in self.graph.act.tolist()]
+
+    @cached_property
+    def _turns(self) -> list[list[int]]:
+        turns: list[list[int]] = self.graph.turn.tolist()
+        return turns
+
+    @cached_property
+    def _behind(self) -> list[list[bool]]:
+        missed = self.graph.act == YarnAct.MISS
+        behind: list[list[bool]] = (~np.where(missed, self.graph.front, self.graph.purl)).tolist()
+        return behind
+
+    @cached_property
+    def _takers(self) -> list[list[int]]:
+        takers: list[list[int]] = self.taker.tolist()
+        return takers
 
     def on_needle(self, row: int, column: int) -> tuple[HeldLoop, ...]:
         """The loops that a site takes, the front of the fabric first."""
         copy, at = divmod(column, self.graph.columns)
         row_copy, row = divmod(row, self.graph.rows)
+        if copy == row_copy == 0:
+            return self._needles[row][at]
         shift = row_copy * self.graph.rows, copy * self.graph.columns
         return tuple(
             held._replace(loop=YarnLoop(held.loop.row + shift[0], held.loop.column + shift[1]))
@@ -159,7 +189,7 @@ class HeldLoops:
 
     def depth(self, row: int, column: int) -> int:
         """Layer of what lies behind, or in front of, all loops on a needle."""
-        return len(self.on_needle(row, column))
+        return len(self._at(self._needles, row, column))
 
     def passing(self, row: int, column: int) -> int:
         """1 where the loops that a site takes pass in front of others on their way, -1 behind."""

@@ -65,9 +65,16 @@ class YarnPath:
 
 @dataclass(frozen=True, eq=False)
 class LoopPaths:
-    """The paths of the yarn of a repeat."""
+    """The paths of the yarn of a repeat.
+
+    Parameters
+    ----------
+    held : the loops on its needles.
+    yarn_over : half the width of the foot of a yarn over, in wales.
+    """
 
     held: HeldLoops
+    yarn_over: float = INNER
 
     @cached_property
     def heights(self) -> Array:
@@ -86,24 +93,33 @@ class LoopPaths:
     def height(self, row: int) -> float:
         """Height of a row's nodes in any copy of the repeat."""
         copy, at = divmod(row, self.held.graph.rows)
-        return float(self.heights[at] + copy * self.heights[-1])
+        return self._heights[at] + copy * self._heights[-1]
+
+    @cached_property
+    def _heights(self) -> list[float]:
+        heights: list[float] = self.heights.tolist()
+        return heights
 
     def of_row(self, row: int) -> YarnPath:
         """The path of a row's yarn."""
         columns = self.held.graph.columns
-        knots: list[Point] = []
-        part: list[int] = []
-        for column in range(columns):
-            for name, points in enumerate(self._site(row, column)):
-                knots += points
-                part += [column * PARTS + name] * len(points)
+        given, part = self.knots(row)
         period = np.array([columns, 0.0, 0.0])
-        given = np.array(knots)
         around = np.concatenate([given[-2:] - period, given, given[:3] + period])
         place = np.arange(len(around)) - 2.0
         fine = np.arange(len(given) * _FINE) / _FINE
         curve = scipy.interpolate.PchipInterpolator(place, around)(fine)
         return YarnPath(curve, np.repeat(part, _FINE), columns)
+
+    def knots(self, row: int) -> tuple[Array, Indices]:
+        """Points (n, 3) through which a row's yarn goes, and the part that each begins."""
+        knots: list[Point] = []
+        part: list[int] = []
+        for column in range(self.held.graph.columns):
+            for name, points in enumerate(self._site(row, column)):
+                knots += points
+                part += [column * PARTS + name] * len(points)
+        return np.array(knots), np.array(part)
 
     def _site(self, row: int, column: int) -> list[list[Point]]:
         """Points of each part of a site's yarn, from the middle between it and the last."""
@@ -114,13 +130,19 @@ class LoopPaths:
             return [[start, (column - _BEFORE, y, z), (column + _BEFORE, y, z)]]
         *left, corner, level = self._leg(row, column, -1)
         *right, last_corner, last_level = self._leg(row, column, 1)
+        inner = self._inner(row, column)
         return [
             [start, (column - _BEFORE, y, z)],
-            [(column - INNER, y, z), *left],
+            [(column - inner, y, z), *left],
             [corner, level, last_level],
             [last_corner, *right[::-1]],
-            [(column + INNER, y, z), (column + _BEFORE, y, z)],
+            [(column + inner, y, z), (column + _BEFORE, y, z)],
         ]
+
+    def _inner(self, row: int, column: int) -> float:
+        """Half the width of a loop at its foot."""
+        is_pulled_through = self.held.depth(row, column) > 0
+        return INNER if is_pulled_through else self.yarn_over
 
     def _feet(self, row: int, column: int) -> float:
         """Layer of the feet of a site, or of the yarn that passes it."""
@@ -130,7 +152,7 @@ class LoopPaths:
     def _leg(self, row: int, column: int, side: int) -> list[Point]:
         """Points of one leg of a loop, from its foot up; the last two are of the head."""
         loop, at, base = YarnLoop(row, column), YarnLoop(row, column), self.height(row)
-        x, z = column + side * INNER, self._feet(row, column)
+        x, z = column + side * self._inner(row, column), self._feet(row, column)
         points: list[Point] = []
         if self.held.act(row, column) is YarnAct.THROUGH:
             z = -z

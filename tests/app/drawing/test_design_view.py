@@ -40,6 +40,18 @@ def test_a_fabric_reaches_as_far_to_each_side_of_its_middle() -> None:
     np.testing.assert_allclose(ends.max(axis=0), ground.extent_mm / 2, rtol=1e-5)
 
 
+def test_stitches_of_lace_and_cables_are_drawn_with_their_colours() -> None:
+    """Where all are knit or purl, nothing changes."""
+    lace = {"chart": "KKKKKK;KO/\\OK;P[2/2R]P;PKKKKP", "material": "acrylic"}
+    scene, plain = scene_of(lace), scene_of(SMALL | {"chart": "KKKKKK/KKKKKK/PKKKKP/PKKKKP"})
+    assert scene.shapes.source.startswith("loops as the chart knits them")
+    assert not plain.shapes.source.startswith("loops as")
+    np.testing.assert_array_equal(scene.colours, plain.colours)
+    part = scene_of(lace | {"outline": "......\n.xxxx.\n.xxxx.\n.xxxx."})
+    assert part.drawn is not None
+    np.testing.assert_array_equal(part.shapes.lines, scene.shapes.lines)
+
+
 def test_an_outline_follows_the_stitches_of_a_part() -> None:
     ground = scene_of(SMALL).ground
     cross = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]]) > 0

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.viewer import cloth
 from app.viewer import scene as scene_module
 from app.viewer.camera import ASPECT, CameraSide
 from app.viewer.cloth import FINEST, UNITS_PER_MM, ShownStitches
@@ -30,6 +31,12 @@ def view(monkeypatch: pytest.MonkeyPatch) -> Iterator[View]:
 
 def _show(view: View, request: dict[str, str]) -> None:
     view.show(scene_of(request).drawing())
+
+
+def _handles(view: View) -> list[Any]:
+    """Nodes of stitches that browsers have."""
+    handles = view.server.scene._handle_from_node_name
+    return [handle for name, handle in handles.items() if name.startswith("/fabric/")]
 
 
 def _nodes(view: View) -> dict[str, int]:
@@ -54,6 +61,27 @@ def test_a_stroke_moves_stitches_between_the_shapes_that_are_there(view: View) -
     assert sum(painted.values()) == 144
     _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 12)})
     assert _nodes(view) == {plain: 144}
+
+
+def test_stitches_that_are_all_different_are_a_mesh_for_each_colour(
+    view: View, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lace = SMALL | {"chart": "KKKKKK\nKO/\\OK", "colour": "yarn"}
+    _show(view, lace)
+    parts = _nodes(view)
+    tube = len(_handles(view)[0].vertices)
+    with monkeypatch.context() as few:
+        few.setattr(cloth, "MOST_SHAPES", len(parts) - 1)
+        for _ in range(2):
+            _show(view, lace)
+            (whole,) = _handles(view)
+            assert len(whole.vertices) == 12 * tube
+            assert whole.faces.max() == 12 * tube - 1
+    drawing = view.writer.drawing
+    assert drawing is not None
+    assert (np.ptp(whole.vertices, axis=0)[:2] > 0.9 * drawing.ground.extent_mm).all()
+    _show(view, lace)
+    assert sum(_nodes(view).values()) == 12
 
 
 def test_another_size_of_the_chart_needs_no_new_shapes(view: View) -> None:

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from knitcore.base.arrays import runs
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
 from knitcore.formats.write.written_pattern import piece_row_words, written_sections
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, check_row
-from knitcore.garment.worked_piece import PieceRow, piece_rows
+from knitcore.garment.worked_piece import PieceRow, all_rows, piece_rows
 from knitcore.machine.home.hand_plan import hand_plan
 from knitcore.machine.home.plan_rows import HandRow
 from knitcore.machine.profile import MachineProfile
@@ -70,7 +71,7 @@ class KnitAlong:
 
 
 def knit_along(
-    chart: StitchChart | Piece,
+    chart: StitchChart | Piece | SymbolChart,
     construction: Construction = Construction.FLAT,
     *,
     first_side: Side = Side.RS,
@@ -81,13 +82,15 @@ def knit_along(
 
     Parameters
     ----------
+    chart : a piece, or a chart of any stitches, whose marks are those of its purl map.
     machine : a home machine; None for knitting by hand. On a machine the piece is flat.
     from_row : the first row, after a break.
 
     Raises
     ------
     InputError
-        If it cannot be worked in the round or on the machine, or there is no such row.
+        If it cannot be worked in the round or on the machine, or there is no such row. Machines
+        are told knits and purls only.
 
     Examples
     --------
@@ -96,23 +99,30 @@ def knit_along(
     right side ('*p1, k1; rep from * to end',) KPKP
     wrong side ('*p1, k1; rep from * to end',) KPKP
     """
-    piece = Piece.of(chart).cropped()
+    if isinstance(chart, SymbolChart):
+        every: Piece | SymbolChart = chart
+        piece = Piece.plain(chart.plain)
+        if machine is not None:
+            knits_and_purls(chart)
+    else:
+        every = piece = Piece.of(chart).cropped()
     check_row(from_row, piece.chart.rows)
-    repeat = piece.chart.repeat_cut().rows
+    repeat = (piece.chart if isinstance(every, Piece) else every).repeat_cut().rows
     if machine is not None:
         plan = hand_plan(piece, machine).resumed(from_row)
         rows = tuple(_machine_row(row) for row in plan.rows)
         marked = "on the ribber" if plan.ribber else "to be latched up"
         texts = (plan.opening, rows, plan.closing, (*plan.notes, plan.time))
         return KnitAlong(*texts, False, repeat, marked, piece.yarns, plan.needles)
-    opening, _ = written_sections(piece, construction, first_side=first_side)
+    opening, _ = written_sections(every, construction, first_side=first_side)
+    said = all_rows(every, construction, first_side=first_side)
     worked = piece_rows(piece, construction, first_side=first_side)
     several = len(piece.yarns) > 1
     left = _lefts(piece, worked)
     in_round = construction is Construction.ROUND
     rows = tuple(
-        _hand_row(number, row, left[number - 1], several=several, in_round=in_round)
-        for number, row in enumerate(worked, start=1)
+        _hand_row(number, row, piece_row_words(full, several=several), first, in_round=in_round)
+        for number, (row, full, first) in enumerate(zip(worked, said, left, strict=True), start=1)
     )[from_row - 1 :]
     notes = () if piece.yarns == (MAIN_YARN,) else tuple(opening[1:])
     return KnitAlong(
@@ -120,12 +130,11 @@ def knit_along(
     )
 
 
-def _hand_row(number: int, row: PieceRow, first: int, *, several: bool, in_round: bool) -> AlongRow:
+def _hand_row(number: int, row: PieceRow, words: str, first: int, *, in_round: bool) -> AlongRow:
     stitches = "".join("P" if purl else "K" for purl in reversed(row.stitches))
     yarns = tuple((stop - start, yarn) for start, stop, yarn in runs(row.yarns[::-1]))
-    words = (piece_row_words(row, several=several),)
     heading = "" if in_round else SIDES[row.side]
-    return AlongRow(number, heading, True, words, stitches, first, yarns)
+    return AlongRow(number, heading, True, (words,), stitches, first, yarns)
 
 
 def _lefts(piece: Piece, worked: tuple[PieceRow, ...]) -> list[int]:

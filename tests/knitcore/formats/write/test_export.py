@@ -13,7 +13,7 @@ import pytest
 import trimesh
 from hypothesis import example, given, settings
 
-from knitcore import Direction, Fabric, InputError, StitchChart, material
+from knitcore import Direction, Fabric, InputError, RelaxedSize, StitchChart, material, predict
 from knitcore.chart.row_sides import Construction
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.designs.garment_design import design_of_plan
@@ -47,6 +47,7 @@ from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radiu
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.mechanics.local_moduli import local_moduli
+from knitcore.prediction.prediction import Source
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
 from tests.knitcore.symbol_charts import symbol_charts
@@ -462,6 +463,32 @@ def test_other_formats_refuse_other_stitches_in_words(kind: ExportKind) -> None:
     chart = SymbolChart.parse("O/;KK")
     with pytest.raises(InputError, match=f"{kind} holds knits and purls only. Export .*text, "):
         export_chart(chart, kind, ACRYLIC)
+
+
+def test_a_pattern_and_a_report_have_the_size_words_and_symbols_of_all_stitches() -> None:
+    mesh = SymbolChart.parse("KKKKKK;KO/\\OK").tile(4, 2)
+    options = ExportOptions(name="Mesh")
+
+    def text(options: ExportOptions) -> str:
+        drawing = export_chart(mesh, ExportKind.PATTERN_SVG, ACRYLIC, options).content.decode()
+        return re.sub(r"(\s|<[^>]*>)+", " ", drawing)
+
+    size = predict(mesh, ACRYLIC)
+    width, height = 1.2 * size.relaxed_course_mm, 0.8 * size.relaxed_wale_mm
+    for words in (f"{width:.1f} × {height:.1f} cm at rest", "ssk", "yo: yarn over", "yo, ssk"):
+        assert words in text(options)
+    assert export_chart(mesh, ExportKind.REPORT, ACRYLIC, options).content.startswith(b"%PDF")
+    assert report.SOURCES.keys() == set(Source)
+    gauged = ExportOptions(gauge=RelaxedSize(5.0, 4.0))
+    assert "6.0 × 3.2 cm at rest" in text(gauged)
+
+
+def test_a_solid_of_other_stitches_has_a_closed_tube_for_every_row() -> None:
+    rope = SymbolChart.parse("P[2/2R]P;PKKKKP;PKKKKP")
+    content = export_chart(rope, ExportKind.STL, ACRYLIC).content
+    solid = trimesh.load(io.BytesIO(content), file_type="stl")
+    assert solid.body_count == 3
+    assert solid.is_watertight
 
 
 def test_a_shaped_chart_of_other_stitches_is_refused() -> None:

@@ -9,7 +9,7 @@ from knitcore.base.errors import InputError
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.yarn.loops.held_loops import HeldLoops
 from knitcore.yarn.loops.loop_paths import LoopPaths
-from tests.knitcore.yarn.random_charts import balanced_charts
+from tests.knitcore.symbol_charts import symbol_charts
 
 
 def paths(chart: SymbolChart) -> list[Array]:
@@ -18,7 +18,7 @@ def paths(chart: SymbolChart) -> list[Array]:
 
 
 @settings(max_examples=15)
-@given(balanced_charts())
+@given(symbol_charts(most_rows=2, most_columns=6, drawn=True))
 def test_mirror_image_and_back_have_the_mirrored_shape(chart: SymbolChart) -> None:
     for image, depth in ((chart.mirror(), 1.0), (chart.turn_over(), -1.0)):
         for path, mirrored in zip(paths(chart), paths(image), strict=True):

@@ -5,6 +5,7 @@ import pytest
 
 from knitcore import InputError, StitchChart
 from knitcore.chart.row_sides import Construction, Side
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.write.sheets.knit_along import knit_along
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.piece import Piece, PieceYarn
@@ -37,6 +38,19 @@ def test_words_are_those_of_the_written_rows(construction: Construction, side: S
     assert along.opening == (written[0],)
     for row, line in zip(along.rows, written[1:-1], strict=True):
         assert row.words[0].lower() in line.lower()
+
+
+@pytest.mark.parametrize("construction", list(Construction))
+def test_rows_of_any_stitches_have_their_words(construction: Construction) -> None:
+    chart = SymbolChart.parse("P[2/2R]P\nPKKKKP\nKO/\\OK\nTKPKKK\nKKKKPP")
+    along = knit_along(chart, construction)
+    written = write_rows(chart, construction).splitlines()
+    for row, line in zip(along.rows, written[1:-1], strict=True):
+        assert row.words[0].lower() in line.lower()
+    plain = knit_along(chart.plain, construction)
+    assert [row.stitches for row in along.rows] == [row.stitches for row in plain.rows]
+    with pytest.raises(InputError, match="yarn over"):
+        knit_along(chart, machine=profile("brother"))
 
 
 def test_rows_of_a_piece_lie_where_its_outline_has_them() -> None:
