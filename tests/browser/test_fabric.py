@@ -82,7 +82,6 @@ def test_the_live_view_is_framed_as_the_picture_before_it(studio: Page) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="known: the live view of a large chart at times keeps another frame")
 def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
     visitor: Page, service: str
 ) -> None:
