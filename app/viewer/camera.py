@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,9 @@ LIFT = 0.08
 FARTHEST = 900.0
 """Units that a camera can go back: browsers draw nothing that is 1000 units away."""
 MOVED = 1e-3
-"""Relative change of place from which a camera counts as moved by its user."""
+"""Relative change of place from which a camera counts as moved."""
+MOST_PLACES = 300
+"""Latest places of cameras that are remembered."""
 
 
 class CameraSide(StrEnum):
@@ -75,40 +78,59 @@ def stand(
     return aim + direction * (needed / np.tan(FIELD_OF_VIEW / 2) + nearer), aim, up
 
 
-def place_camera(
-    server: viser.ViserServer,
-    side: CameraSide,
-    extent: Array,
-    below: float,
-    placed: dict[int, Array],
-    *,
-    everybody: bool,
-) -> None:
-    """Place the camera, that of later ones too, so that the whole fabric is seen.
+class Cameras:
+    """The cameras of everybody who looks at a server's scene.
 
-    Parameters
-    ----------
-    server : whose cameras.
-    side : from which the fabric is seen.
-    extent, below : as for :func:`stand`.
-    placed : where the camera of each client was placed last; brought up to date.
-    everybody : also those who have turned or moved their camera since it was placed.
+    Browsers report where their cameras stand, but a while later: from before a camera was placed,
+    or from where cameras began when the browser loaded the scene. So a user has moved a camera
+    only if it stands at none of the places that cameras were given.
     """
-    position, aim, up = stand(side, extent, below)
-    start = server.initial_camera
-    before = np.array(start.position)
-    start.fov = FIELD_OF_VIEW
-    start.up = up
-    start.look_at = aim
-    start.position = position
-    for number, client in server.get_clients().items():
-        last = placed.get(number, before)
-        if not everybody and not np.allclose(client.camera.position, last, rtol=MOVED):
-            continue
-        position, aim, _ = stand(side, extent, below, client.camera.aspect)
-        placed[number] = position
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self._server = server
+        self._given = deque([np.array(server.initial_camera.position)], MOST_PLACES)
+        self._seen: tuple[CameraSide, Array, float] | None = None
+
+    def aim(self, side: CameraSide, extent: Array, below: float, *, everybody: bool) -> None:
+        """Let all cameras, and those of browsers to come, see a whole fabric.
+
+        Parameters
+        ----------
+        side, extent, below : as for :func:`stand`.
+        everybody : also those that their users have moved.
+        """
+        self._seen = side, extent, below
+        position, aim, up = stand(side, extent, below)
+        start = self._server.initial_camera
+        start.fov = FIELD_OF_VIEW
+        start.up = up
+        start.look_at = aim
+        start.position = position
+        self._given.append(position)
+        for client in self._server.get_clients().values():
+            self.place(client, moved=everybody)
+
+    def place(self, client: viser.ClientHandle, *, moved: bool = False) -> None:
+        """Let a camera see the whole fabric where it does not, or no longer, stand so that it does.
+
+        Parameters
+        ----------
+        moved : also one that its user has moved.
+        """
+        camera = client.camera
+        if self._seen is None or not (moved or _is_at(camera.position, *self._given)):
+            return
+        position, aim, up = stand(*self._seen, camera.aspect)
+        if _is_at(camera.position, position):
+            return
+        self._given.append(position)
         with client.atomic():
-            client.camera.fov = FIELD_OF_VIEW
-            client.camera.up_direction = up
-            client.camera.position = position
-            client.camera.look_at = aim
+            camera.fov = FIELD_OF_VIEW
+            camera.up_direction = up
+            camera.position = position
+            camera.look_at = aim
+
+
+def _is_at(position: Array, *places: Array) -> bool:
+    away = np.linalg.norm(np.array(places) - position, axis=1)
+    return bool(away.min() <= MOVED * np.linalg.norm(position))

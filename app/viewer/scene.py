@@ -13,7 +13,7 @@ from knitcore.draw.instances import level_of
 
 from ..drawing.colours import SKIN
 from ..drawing.fabric import Box, Drawing, FabricScene, Ground
-from .camera import ASPECT, CameraSide, place_camera
+from .camera import ASPECT, Cameras, CameraSide
 from .cloth import UNITS_PER_MM, ShownStitches
 
 if TYPE_CHECKING:
@@ -59,8 +59,7 @@ class SceneWriter:
         self._timer: threading.Timer | None = None
         self._layers: dict[str, Any] = {}
         self._framed: tuple[tuple[int, int], Array] | None = None
-        self._placed: dict[int, Array] = {}
-        self._narrow: dict[int, float] = {}  # width over height of clients' views, ASPECT at most
+        self._cameras = Cameras(server)
         self._side = CameraSide.FACE
         self.coarse = self._laid_coarse = False
 
@@ -107,14 +106,9 @@ class SceneWriter:
             self._place_camera(everybody=True)
 
     def fit(self, client: viser.ClientHandle) -> None:
-        """Place the cameras again that nobody has turned if a view has got another shape."""
-        number, narrow = client.client_id, min(client.camera.aspect, ASPECT)
+        """Let a camera that nobody has turned see the whole fabric in a view of its shape."""
         with self._lock:
-            if abs(np.log(narrow / self._narrow.get(number, ASPECT))) > REFRAMED:
-                before = self._placed.get(number)
-                self._place_camera(everybody=False)
-                if self._placed.get(number) is not before:  # a new one first stands elsewhere
-                    self._narrow[number] = narrow
+            self._cameras.place(client)
 
     def redraw(self) -> None:
         """Draw the same again if it should be finer or coarser now."""
@@ -164,11 +158,9 @@ class SceneWriter:
         if self._drawing is None:
             return
         ground = self._drawing.ground
-        extent, below = (
-            UNITS_PER_MM * ground.framed_mm,
-            UNITS_PER_MM * WORDS_BELOW * _scale_below_mm(ground),
-        )
-        place_camera(self._server, self._side, extent, below, self._placed, everybody=everybody)
+        extent = UNITS_PER_MM * ground.framed_mm
+        below = UNITS_PER_MM * WORDS_BELOW * _scale_below_mm(ground)
+        self._cameras.aim(self._side, extent, below, everybody=everybody)
 
     # -- layers -------------------------------------------------------------------------------
 

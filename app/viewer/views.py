@@ -221,6 +221,7 @@ def new_view() -> View:
     def stay_in_sight(client: viser.ClientHandle) -> None:
         client.camera.max_orbit_distance = FARTHEST
         client.camera.on_update(lambda _: writer.fit(client))
+        writer.fit(client)  # it may have begun where cameras no longer do
 
     return View(server, writer)
 

@@ -6,12 +6,13 @@ stress a phase's strain over the patch's lies between 1 and what it is in the fl
 
     strain_p = prediction (1 + c (strain_p of the pure fabric / strain of the flat composite - 1)),
 
-and laws are fitted to that. Phases in series then add up to the prediction, and the quarters that
-stretch most in the flat composite still do. In fine textures c is a half: neighbours restrain each
-other (and neighbouring cells that differed as much as the pure fabrics would be crushed). With the
-share of wide areas of one phase it rises to 1. Like the predictions, these parts pass gradually
-from those of the whole chart to those of its patches. From patch to patch the laws change
-gradually (:func:`knitcore.prediction.patches.shares_of_patches`): cloth of one texture has no step.
+and laws are fitted to that, all strains scaled at each stress so that the phases add up to the
+prediction, in series or side by side. The quarters that stretch most in the flat composite still
+do. In fine textures c is a half: neighbours restrain each other (and neighbouring cells that
+differed as much as the pure fabrics would be crushed). With the share of wide areas of one phase it
+rises to 1. Like the predictions, these parts pass gradually from those of the whole chart to those
+of its patches. From patch to patch the laws change gradually
+(:func:`knitcore.prediction.patches.shares_of_patches`): cloth of one texture has no step.
 Stitch sizes are those of their surroundings (:mod:`knitcore.prediction.neighbourhood`), scaled
 to the prediction's relaxed size. Poisson's ratios are the prediction's, or less where one
 energy for both directions requires it. A piece of one pure fabric keeps its own law.
@@ -55,6 +56,11 @@ SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
 _FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
 _LOCKED: Array = np.concatenate([np.linspace(0.3, 0.9, 25), np.linspace(0.905, 0.995, 19)])
 """Shares of the lock-up strain that the largest of the strains may be."""
+ROUNDS = 4
+"""Times that strains of phases are scaled so that they add up."""
+HELD = 0.75
+"""Weight of lines that hold each other, in the logarithm of the strain: with it, sliding strips of
+charts that repeat over two rows agree with their laws."""
 _WIDE = 9
 """Quarter cells a side of an area of one phase that counts as wide: two stitches around one."""
 _MAX_POISSON = 0.9
@@ -114,7 +120,8 @@ def quarter_laws(
     laws: list[ConstitutiveLaw] = []
     for cells, prediction in _each(patches, phases):
         parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, records)
-        laws += _fitted_laws(cells, prediction, records, None if even else parts)
+        cloths = [(patches.alike, phases), (1 - patches.alike, cells)]
+        laws += _fitted_laws(cells, prediction, records, None if even else (parts, cloths))
     own_error = partial(_stress_log_sd, phases, patches, records)
     return QuarterLaws(tuple(laws), *_mixing(patches, chart), scale, own_error)
 
@@ -201,11 +208,15 @@ def _own_log_sd(
 
 
 def _fitted_laws(
-    cells: Codes, prediction: Prediction, records: list[FabricRecord], parts: Array | None
+    cells: Codes,
+    prediction: Prediction,
+    records: list[FabricRecord],
+    phases: tuple[Array, list[tuple[float, Codes]]] | None,
 ) -> list[ConstitutiveLaw]:
     """Laws of the phases that give a patch its predicted response.
 
-    All phases get the same law if no parts are given.
+    All phases get the same law, or have these parts in the strains of these cloths, which are
+    between the whole chart and the patch.
 
     A phase keeps its couplings kappa as far as it is as stiff as in its pure fabric: cloth that
     unfolds first has little strain in its yarn. So a patch that is all but pure has nearly the
@@ -216,10 +227,12 @@ def _fitted_laws(
     constants = np.zeros((2, len(records), 3))  # Young's modulus, alpha, beta
     for direction in Direction:
         strains = prediction.along(direction).strain(STRESSES)
-        if parts is None:
+        if phases is None:
             constants[direction.axis] = _fitted(strains)
             continue
-        constants[direction.axis] = [_fitted(strains * part) for part in parts[direction.axis]]
+        parts, cloths = phases
+        added = _added_up(cloths, records, direction, strains, parts[direction.axis])
+        constants[direction.axis] = [_fitted(phase) for phase in added]
     alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
     own = np.array(
         [[(r.law.modulus(d), r.law.alpha(d), r.law.beta(d)) for r in records] for d in Direction]
@@ -227,7 +240,7 @@ def _fitted_laws(
     kept = np.minimum((constants / alone)[..., 0].min(axis=0), 1.0)[:, None]
     kappa = kept * [(r.law.kappa_xx, r.law.kappa_yy) for r in records]
     regained = kept * np.log(np.divide(own, alone, out=np.ones_like(own), where=alone * own > 0))
-    if parts is None:
+    if phases is None:
         shares = _shares(cells)
         shear[:], growth[:] = np.exp(shares @ np.log(shear)), shares @ growth
         kappa[:], regained[:] = shares @ kappa, (shares @ regained)[:, None]
@@ -266,6 +279,41 @@ def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, fl
     return _fitted(law_strains(law, direction, STRESSES))
 
 
+def _added_up(
+    cloths: list[tuple[float, Codes]],
+    records: list[FabricRecord],
+    direction: Direction,
+    strains: Array,
+    parts: Array,
+) -> Array:
+    """Strains (phases, stresses) of phases that add up to those of their patch, (stresses,).
+
+    Where phases lie side by side, one carries more than the mean stress and the other less, so
+    that the parts of their strains do not add up. All are scaled alike, at each stress, until
+    together they have the law that is fitted to the patch. Lines of stitches hold each other, but
+    not quite: the strain is a mean of both bounds, :data:`HELD`.
+    """
+    even = _strains_of(np.array([_fitted(strains)]), STRESSES)[0]
+    scaled = even * parts
+    for _ in range(ROUNDS):
+        own = _strains_of(np.array([_fitted(phase) for phase in scaled]), _FINE)
+        for weight, cells in cloths:
+            free, held = (
+                bound(cells, records, direction, own) for bound in (_free_strain, _held_strain)
+            )
+            scaled *= (even / (free ** (1 - HELD) * held**HELD)) ** weight
+    return np.asarray(scaled)
+
+
+def _strains_of(constants: Array, stresses: Array) -> Array:
+    """Strains (laws, stresses) of laws with the constants (laws, 3) of :func:`_fitted`."""
+    modulus, alpha, beta = constants.T[..., None]
+    at = np.append(0.0, np.geomspace(1e-4, 1.0, 400)) / alpha
+    stress = modulus * at + beta * stiffening(alpha * at)[1]
+    pairs = zip(stress, at, strict=True)
+    return np.stack([np.interp(stresses, carried, strain) for carried, strain in pairs])
+
+
 def _parts(cells: Codes, records: list[FabricRecord]) -> Array:
     """Ratios of the phases' strains to the cloth's at :data:`STRESSES`, (2, phases, stresses).
 
@@ -281,20 +329,50 @@ def _parts(cells: Codes, records: list[FabricRecord]) -> Array:
 
 
 def _flat_strain(cells: Codes, records: list[FabricRecord], direction: Direction) -> Array:
-    lines = cells if direction is Direction.COURSE else cells.T
-    along, across = (
-        np.array([r.stitch_size_mm(d) for r in records]) for d in (direction, direction.other)
-    )
+    """Strain of the flat composite at :data:`STRESSES`."""
+    strains = np.stack([law_strains(r.law, direction, _FINE) for r in records])
+    return _free_strain(cells, records, direction, strains)
+
+
+def _free_strain(
+    cells: Codes, records: list[FabricRecord], direction: Direction, strains: Array
+) -> Array:
+    """Strain at :data:`STRESSES` of lines along the pull that do not hold each other.
+
+    The phases have the ``strains`` (phases, stresses) at :data:`_FINE`. In a line all carry the
+    same force, and all lines are strained alike.
+    """
+    lengths, widths = _cut(cells, records, direction)
+    of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
+    common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
+    stress = widths @ np.array([np.interp(common, line, _FINE) for line in of_line])
+    return np.asarray(np.interp(STRESSES, stress / widths.sum(), common))
+
+
+def _held_strain(
+    cells: Codes, records: list[FabricRecord], direction: Direction, strains: Array
+) -> Array:
+    """Strain at :data:`STRESSES` of lines across the pull that are strained alike throughout.
+
+    One after the other, they carry the same force.
+    """
+    widths, lengths = _cut(cells, records, direction.other)
+    common = np.linspace(0.0, 1.0, 400) ** 2 * strains[:, -1].max()
+    stress = np.array([np.interp(common, phase, _FINE) for phase in strains])
+    of_line = widths @ stress / widths.sum(axis=1, keepdims=True)
+    strain = lengths @ np.array([np.interp(STRESSES, line, common) for line in of_line])
+    return np.asarray(strain / lengths.sum())
+
+
+def _cut(cells: Codes, records: list[FabricRecord], along: Direction) -> tuple[Array, Array]:
+    """Kinds of lines of cells: how much of each phase there is along them, (kinds, phases), and
+    how wide all lines of each kind are together, (kinds,).
+    """
+    lines = cells if along is Direction.COURSE else cells.T
+    size, across = (np.array([r.stitch_size_mm(d) for r in records]) for d in (along, along.other))
     counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
     kinds, same = np.unique(counts, axis=0, return_inverse=True)
-    lengths = kinds * along
-    strains = np.stack([law_strains(r.law, direction, _FINE) for r in records])
-    of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
-    width = np.bincount(same.ravel()) * (kinds @ across)
-    common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
-    stress = width @ np.array([np.interp(common, line, _FINE) for line in of_line]) / width.sum()
-    flat: Array = np.interp(STRESSES, stress, common)
-    return flat
+    return kinds * size, np.bincount(same.ravel()) * (kinds @ across)
 
 
 def _fitted(strains: Array) -> tuple[float, float, float]:

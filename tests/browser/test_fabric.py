@@ -82,7 +82,6 @@ def test_the_live_view_is_framed_as_the_picture_before_it(studio: Page) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="known: the live view of a large chart at times keeps another frame")
 def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
     visitor: Page, service: str
 ) -> None:
@@ -102,7 +101,7 @@ def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
         _wait_until_framed(page, still)
         before = pixels(page, CLOTH)
         with page.expect_response(lambda r: r.url.endswith(view) and r.request.method == "PUT"):
-            drag(page, 60, 30, start=(0, below))
+            drag(page, 180, 0, start=(0, below))  # a few stitches are hardly a pixel
         wait_for_picture(page, CLOTH, partial(_recoloured, before), 10)
         settle(page)
         _wait_until_framed(page, still)

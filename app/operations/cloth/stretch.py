@@ -10,6 +10,7 @@ from pydantic import Field
 
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
+from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.cloth.flat import (
     Clamps,
@@ -38,6 +39,11 @@ Array = NDArray[np.float32]
 
 MAX_STITCHES = 40_000
 """Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
+MIXED = (
+    "Forces may differ by a quarter from the chart's curve: mixed stitches first unfold, and the "
+    "laws of a test can only stiffen."
+)
+"""Said of tests of charts of several fabrics."""
 MAX_VALUES = 60 * MAX_STITCHES
 """Largest number of stitches times steps over REST: the answer has seven numbers for each."""
 
@@ -229,11 +235,11 @@ def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) ->
         nearest_lock_up=_nearest(test),
         first_taut=_first_taut(test),
         tightest=test.tightest() if test.steps else 0.0,
-        messages=_messages(test),
+        messages=_messages(test, mixed=pure_fabric(to_chart(request.chart)) is None),
     )
 
 
-def _messages(test: StripTest) -> list[str]:
+def _messages(test: StripTest, *, mixed: bool) -> list[str]:
     """Warnings and notes on a test."""
     messages = [test.problem] if test.problem else []
     used = float(test.utilisation.max(initial=0.0))
@@ -248,7 +254,7 @@ def _messages(test: StripTest) -> list[str]:
             f"The tightest stitches stretch {used:.2f} times as far as their yarn allows: the "
             "published model leaves out where real cloth runs out of stretch."
         )
-    return messages
+    return [*messages, MIXED] if mixed and full else messages
 
 
 def _stitches(

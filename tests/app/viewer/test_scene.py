@@ -218,15 +218,49 @@ def test_a_narrow_view_is_seen_from_farther_and_a_turned_camera_stays(view: View
 
 
 def test_a_view_that_opens_narrow_is_placed_once_its_camera_stands(view: View) -> None:
-    """A client tells its shape before its camera stands where all do."""
+    """A client reports its shape before its camera stands where all do."""
     (client,) = view.server.get_clients().values()
     client.camera.aspect = 0.46
-    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 6)})
     client.camera.position = np.full(3, 3.0)
-    view.writer.fit(client)
+    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 6)})
     client.camera.position = start = np.array(view.server.initial_camera.position)
     view.writer.fit(client)
     assert np.linalg.norm(client.camera.position) > np.linalg.norm(start)
+
+
+@pytest.mark.parametrize("heard", ["before the next", "after it"])
+def test_a_late_report_of_a_camera_is_no_move_of_its_user(view: View, heard: str) -> None:
+    """It is of where the camera stood before it was placed, and comes while cloths change."""
+    (client,) = view.server.get_clients().values()
+
+    def report(position: np.ndarray) -> None:
+        client.camera.position = position
+        view.writer.fit(client)
+
+    starts = []
+    for columns in (12, 20, 12):
+        _show(view, SMALL | {"chart": "\n".join(["K" * columns] * 12)})
+        starts.append(np.array(view.server.initial_camera.position))
+        if columns == 12 or heard == "before the next":
+            report(starts[0])
+    small, large, _ = starts
+    np.testing.assert_array_equal(client.camera.position, small)
+    report(large)
+    np.testing.assert_array_equal(client.camera.position, small)
+    report(close := np.array([0.01, 0.02, 0.05]))
+    np.testing.assert_array_equal(client.camera.position, close)
+
+
+def test_a_browser_that_loaded_an_earlier_scene_sees_the_whole_cloth(
+    view: View, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clients = view.server.get_clients()
+    monkeypatch.setattr(view.server, "get_clients", dict)
+    _show(view, SMALL | {"chart": "\n".join(["K" * 12] * 12)})
+    clients[0].camera.position = np.array(view.server.initial_camera.position)
+    _show(view, SMALL | {"chart": "\n".join(["K" * 30] * 12)})
+    view.writer.fit(clients[0])
+    np.testing.assert_array_equal(clients[0].camera.position, view.server.initial_camera.position)
 
 
 def test_the_light_between_the_yarn_is_sent_with_its_corners(

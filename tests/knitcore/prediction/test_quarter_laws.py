@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from knitcore import StitchChart, material, predict
+from knitcore import StitchChart, material, predict, strip_test
 from knitcore.chart.fabric import PHASES, Direction, Fabric
 from knitcore.chart.phases import quarter_phases
 from knitcore.cloth.flat import chart_sheet
@@ -71,6 +71,24 @@ def test_laws_of_one_texture_have_no_steps(name: str, yarn: str) -> None:
         logs = np.log(sheet.parameters[constant])[codes]
         for axis, wide in enumerate(wide_stitches(piece)):
             assert np.abs(np.diff(logs, axis=axis))[wide].max() < 0.12
+
+
+@pytest.mark.parametrize("direction", Direction)
+@pytest.mark.parametrize("repeat", ["KKKP", "KPKK/KKKP", "KPPK/KKKK", "KKKP/PPKK"])
+def test_phases_side_by_side_carry_together_what_their_patch_does(
+    repeat: str, direction: Direction
+) -> None:
+    """A strip with sliding ends is as stiff as one with the patch's law in all quarters."""
+    chart, acrylic = StitchChart.parse(repeat).resized(8, 8), material("acrylic")
+    strains = predict(chart, acrylic).along(direction).strain([0.01, 0.03, 0.1]).tolist()
+    own, even = (
+        strip_test(
+            chart, acrylic, direction, strains, clamps="sliding",
+            laws=quarter_laws(chart, acrylic, even=even),
+        ).stress_n_per_mm
+        for even in (False, True)
+    )  # fmt: skip
+    np.testing.assert_allclose(own, even, rtol=0.08)
 
 
 def test_stitches_fold_by_their_surroundings_and_on_average_like_the_answer() -> None:
