@@ -8,9 +8,11 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.segments import SegmentCounts, segment_map
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
+from knitcore.design.certainty import Act, narrowings
 from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.materials import Material
+from knitcore.materials.interval_parts import Part
 from knitcore.materials.yarn_per_stitch import has_loop_length, mean_yarn
 from knitcore.prediction.hand import hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
@@ -40,10 +42,6 @@ class HandStretchResult(ResultModel):
 
     strain: float = Field(description="From the size at rest, the other direction free.")
     strain_interval: Ends
-    strain_with_gauge: Ends | None = Field(
-        description="The interval if a gauge of this chart were counted; null if it is known, or "
-        "in a chart that is predicted in patches."
-    )
     word: Literal["firm", "slightly stretchy", "stretchy", "very stretchy"]
     more_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch less.")
     less_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch more.")
@@ -56,6 +54,28 @@ class HandPullResult(ResultModel):
     n_per_mm: float = Field(description="Force per width of cloth: 0.1 N/mm is 10 N on 10 cm.")
     course: HandStretchResult
     wale: HandStretchResult
+
+
+class NarrowingResult(ResultModel):
+    """Where the interval of a number comes from, and what would narrow it."""
+
+    quantity: str = Field(
+        description="Field of the number in this result; strain_course or strain_wale for the "
+        "stretch at a pull."
+    )
+    n_per_mm: float | None = Field(description="Force per width of a strain, else null.")
+    shares: dict[Part, float] = Field(
+        description="Shares of the parts in the variance of the logarithm (of a Poisson's ratio, "
+        "of its own variance), the largest first."
+    )
+    interval: Ends = Field(description="In the unit of the quantity.")
+    act: Act | None = Field(
+        description="What would remove the largest part that can be: a gauge counted "
+        "(`gauge`), a swatch weighed (`yarn_per_stitch_mm` of a garment), or a strip pulled "
+        "(`measure pull`); null if nothing helps."
+    )
+    how: str = Field(description="The same in words; empty if nothing helps.")
+    left: Ends | None = Field(description="The interval after it.")
 
 
 class SegmentCountsResult(ResultModel, SegmentCounts):
@@ -119,6 +139,9 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
     )
     notes: list[str]
     hand: list[HandPullResult] = Field(description="By growing pull; empty unless asked for.")
+    narrowing: list[NarrowingResult] = Field(
+        description="What the intervals come from, and what would narrow them."
+    )
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
@@ -148,7 +171,8 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         if isinstance(described, StitchChart)
         else _others(described, predicted.relaxed_course_mm),
         "notes": [*notes, *predicted.notes],
-        "hand": hand_pulls(described, material, predicted) if request.hand else [],
+        "narrowing": narrowings(described, material, predicted),
+        "hand": hand_pulls(material, predicted) if request.hand else [],
     }
     whole_piece = vars(size_at_rest(shaped, material, predicted))
     return PredictResult.model_validate(predicted.to_dict() | whole_piece | given)
@@ -190,6 +214,7 @@ def _lines(r: PredictResult) -> list[str]:
         *_yarn_line(r),
         *_others_line(r),
         *(_hand_line(pull) for pull in r.hand),
+        *_narrowing_lines(r),
         f"source          {r.provenance} ({r.method})",
     ]
 
@@ -200,6 +225,20 @@ def _hand_line(pull: HandPullResult) -> str:
         low, high = of.strain_interval
         along.append(f"{direction} {of.strain:.0%} ({low:.0%} to {high:.0%}, {of.word})")
     return f"{pull.pull + ' pull':<16}{'   '.join(along)} at {pull.n_per_mm:g} N/mm"
+
+
+def _narrowing_lines(r: PredictResult) -> list[str]:
+    """A line for each act, with the numbers that it would narrow."""
+    hand = {pull.n_per_mm for pull in r.hand}
+    lines: dict[str, list[str]] = {}
+    for each in r.narrowing:
+        if each.left is None or not (each.n_per_mm is None or each.n_per_mm in hand):
+            continue
+        low, high = each.left
+        name = _SHORT.get(each.quantity, each.quantity)
+        at = f" at {each.n_per_mm:g} N/mm" if each.n_per_mm else ""
+        lines.setdefault(each.how, []).append(f"{name}{at} to {low:.3g} .. {high:.3g}")
+    return [f"to narrow       {how}: {', '.join(numbers)}" for how, numbers in lines.items()]
 
 
 def _yarn_line(r: PredictResult) -> list[str]:
@@ -230,6 +269,17 @@ def _relaxed(r: PredictResult) -> str:
     )
 
 
+_SHORT = {
+    "relaxed_course_mm": "width of a stitch",
+    "relaxed_wale_mm": "its height",
+    "modulus_course_n_per_mm": "Young's modulus course",
+    "modulus_wale_n_per_mm": "Young's modulus wale",
+    "poisson_yx": "Poisson's ratio yx",
+    "poisson_xy": "Poisson's ratio xy",
+    "strain_course": "strain course",
+    "strain_wale": "strain wale",
+    "yarn_per_stitch_mm": "yarn in a stitch",
+}
 OPERATION = Operation(
     predict,
     tag="mechanics",
