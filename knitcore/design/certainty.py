@@ -1,4 +1,4 @@
-"""What the interval of a predicted number comes from, and what would narrow it.
+"""Sources of the intervals of predicted numbers, and what would narrow them.
 
 The interval that an act would leave is that of the same prediction, made with what the act tells:
 the gauge as it is expected, the yarn in a stitch as it is expected, or a strip that stretches as it
@@ -35,8 +35,8 @@ WORTH = 0.9
 LINES = {Direction.COURSE: "rows", Direction.WALE: "columns"}
 
 
-class Act(Choice):
-    """What a knitter can do to learn more about cloth."""
+class Remedy(Choice):
+    """An act by which a knitter learns more about cloth."""
 
     COUNT = "count"
     WEIGH = "weigh"
@@ -57,15 +57,21 @@ class Narrowing:
     act : what would remove the largest part that can be removed; None if nothing helps.
     how : the same in words; empty if nothing helps.
     left : the 90 % interval after it; None if nothing helps.
+    fabric, direction : of the strip to pull; None for other acts.
     """
 
     quantity: str
     n_per_mm: float | None
     shares: Mapping[Part, float]
     interval: Interval
-    act: Act | None
+    act: Remedy | None
     how: str
     left: Interval | None
+    fabric: Fabric | None = None
+    direction: Direction | None = None
+
+
+_Help = tuple[Remedy, str, Interval] | tuple[Remedy, str, Interval, Fabric, Direction]
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,16 +121,17 @@ def narrowings(
         worst = int(np.argmax([sum(each.values()) for each in spread]))
         return mixture.parts[worst][1].fabric
 
-    def helped(number: _Number, part: Part) -> tuple[Act, str, Interval] | None:
+    def helped(number: _Number, part: Part) -> _Help | None:
         is_size = number.quantity.startswith("relaxed")
         if part is Part.SIZE or (part is Part.OTHER_STITCHES and is_size):
             if known is not None and known.known_by is KnownBy.GAUGE:
                 return None
-            return Act.COUNT, "count the gauge of your swatch", number.interval_in(counted())
+            return Remedy.COUNT, "count the gauge of your swatch", number.interval_in(counted())
         if part in (Part.LAW, Part.YARN) and not large:
             fabric = least_known(number.direction)
             how = f"pull one strip of {fabric} along its {LINES[number.direction]}"
-            return Act.PULL, how, number.interval_in(after_pull(fabric, number.direction))
+            left = number.interval_in(after_pull(fabric, number.direction))
+            return Remedy.PULL, how, left, fabric, number.direction
         return None
 
     made = [_narrowing(number, prediction, helped) for number in _numbers(prediction)]
@@ -136,9 +143,7 @@ def _both(size: RelaxedSize) -> tuple[float, float]:
 
 
 def _narrowing(
-    number: _Number,
-    prediction: Prediction,
-    helped: Callable[[_Number, Part], tuple[Act, str, Interval] | None],
+    number: _Number, prediction: Prediction, helped: Callable[[_Number, Part], _Help | None]
 ) -> Narrowing:
     shares, now = shares_of(number.parts), number.interval_in(prediction)
     for part, share in shares.items():
@@ -202,7 +207,7 @@ def _yarn(chart: StitchChart | SymbolChart, material: Material) -> Iterator[Narr
     left = mean_yarn(chart, material, MeasuredYarn(mean))[1]
     how = "weigh your swatch, or unravel ten stitches"
     shares = {Part.YARN_PER_STITCH: 1.0}
-    yield Narrowing("yarn_per_stitch_mm", None, shares, now, Act.WEIGH, how, left)
+    yield Narrowing("yarn_per_stitch_mm", None, shares, now, Remedy.WEIGH, how, left)
 
 
 def _width(interval: Interval) -> float:

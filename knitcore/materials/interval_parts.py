@@ -11,7 +11,7 @@ from knitcore.base.choice import Choice
 
 
 class Part(Choice):
-    """What is not known about a predicted number."""
+    """A thing that is not known about a predicted number."""
 
     SIZE = "size at rest"
     SURROUNDINGS = "surroundings of a stitch"

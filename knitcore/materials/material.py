@@ -122,7 +122,7 @@ class FabricRecord:
 
     @property
     def unknown(self) -> Part:
-        """What the uncertainty of the law comes from."""
+        """The source of the uncertainty of the law."""
         return Part.YARN if self.origin is Origin.ESTIMATED else Part.LAW
 
     def stitch_size_mm(self, direction: Direction) -> float:

@@ -8,13 +8,13 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.segments import SegmentCounts, segment_map
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
-from knitcore.design.certainty import Act, narrowings
+from knitcore.design.certainty import Remedy, narrowings
 from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.materials import Material
 from knitcore.materials.interval_parts import Part
 from knitcore.materials.yarn_per_stitch import has_loop_length, mean_yarn
-from knitcore.prediction.hand import hand_pulls
+from knitcore.prediction.hand import PULLS_N_PER_MM, hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.stitch_effects import StitchDensities
 from knitcore.prediction.swept import worth_relaxing
@@ -69,13 +69,15 @@ class NarrowingResult(ResultModel):
         "of its own variance), the largest first."
     )
     interval: Ends = Field(description="In the unit of the quantity.")
-    act: Act | None = Field(
+    act: Remedy | None = Field(
         description="What would remove the largest part that can be: a gauge counted "
         "(`gauge`), a swatch weighed (`yarn_per_stitch_mm` of a garment), or a strip pulled "
         "(`measure pull`); null if nothing helps."
     )
     how: str = Field(description="The same in words; empty if nothing helps.")
     left: Ends | None = Field(description="The interval after it.")
+    fabric: Fabric | None = Field(description="Of the strip to pull.")
+    direction: Direction | None = Field(description="In which it is pulled.")
 
 
 class SegmentCountsResult(ResultModel, SegmentCounts):
@@ -228,17 +230,15 @@ def _hand_line(pull: HandPullResult) -> str:
 
 
 def _narrowing_lines(r: PredictResult) -> list[str]:
-    """A line for each act, with the numbers that it would narrow."""
-    hand = {pull.n_per_mm for pull in r.hand}
+    """A line for each act, with the intervals that it would leave."""
+    shown = dict(_SHORT) if r.hand else {k: v for k, v in _SHORT.items() if k[1] is None}
     lines: dict[str, list[str]] = {}
-    for each in r.narrowing:
-        if each.left is None or not (each.n_per_mm is None or each.n_per_mm in hand):
-            continue
-        low, high = each.left
-        name = _SHORT.get(each.quantity, each.quantity)
-        at = f" at {each.n_per_mm:g} N/mm" if each.n_per_mm else ""
-        lines.setdefault(each.how, []).append(f"{name}{at} to {low:.3g} .. {high:.3g}")
-    return [f"to narrow       {how}: {', '.join(numbers)}" for how, numbers in lines.items()]
+    for of in r.narrowing:
+        name = shown.get((of.quantity, of.n_per_mm))
+        if of.left is not None and name:
+            low, high = of.left
+            lines.setdefault(of.how, []).append(f"{name} {low:.3g} to {high:.3g}")
+    return [f"to narrow       {how}: {', '.join(left)}" for how, left in lines.items()]
 
 
 def _yarn_line(r: PredictResult) -> list[str]:
@@ -270,16 +270,15 @@ def _relaxed(r: PredictResult) -> str:
 
 
 _SHORT = {
-    "relaxed_course_mm": "width of a stitch",
-    "relaxed_wale_mm": "its height",
-    "modulus_course_n_per_mm": "Young's modulus course",
-    "modulus_wale_n_per_mm": "Young's modulus wale",
-    "poisson_yx": "Poisson's ratio yx",
-    "poisson_xy": "Poisson's ratio xy",
-    "strain_course": "strain course",
-    "strain_wale": "strain wale",
-    "yarn_per_stitch_mm": "yarn in a stitch",
+    ("relaxed_course_mm", None): "stitch",
+    ("relaxed_wale_mm", None): "by",
+    ("modulus_course_n_per_mm", None): "modulus course",
+    ("modulus_wale_n_per_mm", None): "modulus wale",
+    ("strain_course", PULLS_N_PER_MM["hand"]): "hand pull course",
+    ("strain_wale", PULLS_N_PER_MM["hand"]): "hand pull wale",
+    ("yarn_per_stitch_mm", None): "yarn",
 }
+"""Words for the numbers that the command prints."""
 OPERATION = Operation(
     predict,
     tag="mechanics",

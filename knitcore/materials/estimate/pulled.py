@@ -21,11 +21,18 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials.estimate.mixed_model import LogStrain, MixedModel
-from knitcore.materials.estimate.without_tester import library_values, log_strain, points_of_law
+from knitcore.materials.estimate.without_tester import (
+    LAW_SCATTER,
+    LAW_STRESSES_N_PER_MM,
+    library_values,
+    log_strain,
+    points_of_law,
+)
 from knitcore.materials.estimate.yarn_statistics import DIRECTIONS, FABRICS, LOAD_N_PER_MM
 from knitcore.materials.law_uncertainty import CurveUncertainty, LawUncertainty
 from knitcore.materials.material import Material, Origin
 from knitcore.measure.stretch_points import StretchPoint
+from knitcore.measure.stretch_test import StretchTest
 
 _Known = tuple[Fabric, ConstitutiveLaw, LawUncertainty, Origin]
 _STEP = 0.05
@@ -33,16 +40,13 @@ _LEAST_ALPHA, _LEAST_BETA = 0.05, 1e-4
 """Floors for a law without stiffening, where logarithms are taken."""
 
 
-def pulled(
-    material: Material, points: Sequence[StretchPoint], library: Array | None = None
-) -> Material:
+def pulled(material: Material, points: Sequence[StretchPoint]) -> Material:
     """The material with laws and intervals as points of stretch curves leave them.
 
     Parameters
     ----------
     material : with the fabrics that were pulled.
     points : of any of its fabrics, all that there are: a second call counts as another yarn's.
-    library : values of known yarns, (yarns, 3, 4, 2); those of the package if left out.
 
     Raises
     ------
@@ -52,7 +56,7 @@ def pulled(
     if not points:
         raise InputError("points", "there are none.", "Give at least one point of a pull.")
     known = tuple((f, r.law, r.uncertainty, r.origin) for f, r in material.fabrics.items())
-    before = _belief(known, library_values() if library is None else library)
+    before = _belief(known)
     laws = [material.law(point.fabric) for point in points]
     after = before.knowing(
         [_over_law(law, before, point) for law, point in zip(laws, points, strict=True)]
@@ -68,6 +72,35 @@ def pulled(
         for fabric, record in material.fabrics.items()
     }
     return replace(material, fabrics=records)
+
+
+def points_of_test(
+    test: StretchTest, fabric: Fabric, direction: Direction
+) -> tuple[StretchPoint, ...]:
+    """Points of a stretch test as far as it goes: means of its pulls, clamp to clamp.
+
+    Raises
+    ------
+    InputError
+        If no pull reaches the smallest stress that is read.
+    """
+    points = []
+    for stress in LAW_STRESSES_N_PER_MM:
+        runs = [run for run in test.runs if run.stress.max() >= stress]
+        if not runs:
+            break
+        strains = [
+            float(np.interp(stress, np.maximum.accumulate(run.stress), run.strain_along))
+            for run in runs
+        ]
+        along = float(np.mean(strains))
+        spread = LAW_SCATTER * along
+        points.append(StretchPoint(fabric, direction, stress, along, spread, 0.0, spread))
+    if not points:
+        least = LAW_STRESSES_N_PER_MM[0]
+        problem = f"no pull reaches {least:g} N/mm."
+        raise InputError(test.source, problem, "Pull farther, or take a narrower strip.")
+    return tuple(points)
 
 
 def if_pulled(material: Material, fabric: Fabric, direction: Direction) -> Material:
@@ -90,7 +123,7 @@ def if_pulled(material: Material, fabric: Fabric, direction: Direction) -> Mater
 def _if_pulled(
     known: tuple[_Known, ...], fabric: Fabric, direction: Direction
 ) -> tuple[tuple[Fabric, LawUncertainty], ...]:
-    before = _belief(known, library_values())
+    before = _belief(known)
     law = next(law for f, law, _, _ in known if f is fabric)
     points = [point for point in points_of_law(fabric, law) if point.direction is direction]
     after = before.knowing([_over_law(law, before, point) for point in points])
@@ -98,9 +131,9 @@ def _if_pulled(
     return tuple((f, _narrowed(f, of, before, after, pull)) for f, _, of, _ in known)
 
 
-def _belief(known: tuple[_Known, ...], library: Array) -> MixedModel:
-    """What is known of the logarithms of modulus, alpha and beta of a material's fabrics."""
-    others = MixedModel.fit(library)
+def _belief(known: tuple[_Known, ...]) -> MixedModel:
+    """The logarithms of modulus, alpha and beta of a material's fabrics, as far as known."""
+    others = MixedModel.fit(library_values())
     mean, estimated = others.mean.copy(), np.ones((4, 2), dtype=bool)
     for fabric, law, _, origin in known:
         i = FABRICS.index(fabric)

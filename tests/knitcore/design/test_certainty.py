@@ -1,4 +1,4 @@
-"""What intervals come from, and that what is promised to narrow them does."""
+"""Sources of intervals, and that what is promised to narrow them does."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 from knitcore import RelaxedSize, StitchChart, material, predict
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.symbol_chart import SymbolChart
-from knitcore.design.certainty import Act, Narrowing, narrowings
+from knitcore.design.certainty import Narrowing, Remedy, narrowings
 from knitcore.materials import Interval, Material
 from knitcore.materials.estimate.pulled import pulled
 from knitcore.materials.estimate.without_tester import (
@@ -39,7 +39,7 @@ def of(
 
 
 def kept(promised: Interval | None, given: Interval) -> bool:
-    """Whether an interval is as wide as promised within 3 %."""
+    """Say whether an interval is as wide as promised within 3 %."""
     assert promised is not None
     ratio = math.log(given.high / given.low) / math.log(promised.high / promised.low)
     return abs(ratio - 1) < 0.03
@@ -70,12 +70,12 @@ def test_a_counted_gauge_leaves_what_was_promised() -> None:
         width, strain = (
             before[key] for key in ((f"relaxed_{direction}_mm", None), (f"strain_{direction}", 0.1))
         )
-        assert width.act is strain.act is Act.COUNT
+        assert width.act is strain.act is Remedy.COUNT
         assert next(iter(width.shares)) is next(iter(strain.shares)) is Part.SIZE
         assert kept(width.left, along.relaxed_interval_mm)
         assert kept(strain.left, Interval(*map(float, along.strain_interval(0.1))))
     again = of(chart, cotton, counted)
-    assert not any(narrowing.act is Act.COUNT for narrowing in again.values())
+    assert not any(narrowing.act is Remedy.COUNT for narrowing in again.values())
 
 
 @pytest.mark.parametrize("name", ["pure", "rib"])
@@ -110,7 +110,7 @@ def test_a_weighed_swatch_leaves_what_was_promised() -> None:
     promised = of(chart, acrylic)["yarn_per_stitch_mm", None]
     mean = mean_yarn(chart, acrylic)[0]
     weighed = MeasuredYarn.weighed(2000 * mean * 0.5e-3, 2000, 500)
-    assert promised.act is Act.WEIGH
+    assert promised.act is Remedy.WEIGH
     assert kept(promised.left, mean_yarn(chart, acrylic, weighed)[1])
 
 
