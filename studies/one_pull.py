@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knitcore.base.arrays import Array
+from knitcore.base.arrays import Array, Mask
 from knitcore.materials.estimate.mixed_model import LogStrain, MixedModel, covering
 from knitcore.materials.estimate.without_tester import (
     HANGING_SCATTER,
@@ -34,7 +34,7 @@ class Missed:
     """
 
     by_model: dict[str, Array]
-    inside: Array
+    inside: Mask
 
 
 def missed() -> Missed:
@@ -76,7 +76,7 @@ def missed() -> Missed:
     shape = (len(values), -1, 3, 2)
     return Missed(
         {name: np.reshape(each, shape).swapaxes(0, 1) for name, each in errors.items()},
-        np.reshape(inside, shape).swapaxes(0, 1),
+        np.reshape(np.array(inside), shape).swapaxes(0, 1),
     )
 
 

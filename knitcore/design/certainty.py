@@ -6,8 +6,9 @@ is expected to.
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from operator import attrgetter
 
 import numpy as np
 
@@ -18,14 +19,14 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.estimate.pulled import if_pulled
-from knitcore.materials.interval_parts import Part, Variances
+from knitcore.materials.interval_parts import Part, Variances, deviation
 from knitcore.materials.yarn_per_stitch import MeasuredYarn, has_loop_length, mean_yarn
 from knitcore.prediction.densities import densities
 from knitcore.prediction.hand import PULLS_N_PER_MM
 from knitcore.prediction.mixture import Mixture
 from knitcore.prediction.patches import is_large
 from knitcore.prediction.predict import predict
-from knitcore.prediction.prediction import Prediction
+from knitcore.prediction.prediction import Along, Prediction
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 LEAST_SHARE = 0.1
@@ -81,8 +82,11 @@ class _Number:
     quantity: str
     direction: Direction
     parts: Variances
-    interval_in: Callable[[Prediction], Interval]
+    interval_of: Callable[[Along], Interval]
     n_per_mm: float | None = None
+
+    def interval_in(self, prediction: Prediction) -> Interval:
+        return self.interval_of(prediction.along(self.direction))
 
 
 def narrowings(
@@ -104,7 +108,7 @@ def narrowings(
     known = None
     if prediction.size_is_known:
         known_by = KnownBy(prediction.relaxed_source)
-        known = RelaxedSize(*_both(size), prediction.course.relaxed_log_sd, known_by)
+        known = replace(size, log_sd=prediction.course.relaxed_log_sd, known_by=known_by)
 
     @cache
     def counted() -> Prediction:
@@ -118,7 +122,7 @@ def narrowings(
     def least_known(direction: Direction) -> Fabric:
         mixture = Mixture.of(densities(repeat).shares, material)
         spread = mixture.variances(direction, PULLS_N_PER_MM["hand"])
-        worst = int(np.argmax([sum(each.values()) for each in spread]))
+        worst = int(np.argmax([deviation(each) for each in spread]))
         return mixture.parts[worst][1].fabric
 
     def helped(number: _Number, part: Part) -> _Help | None:
@@ -136,10 +140,6 @@ def narrowings(
 
     made = [_narrowing(number, prediction, helped) for number in _numbers(prediction)]
     return (*made, *_yarn(chart, material))
-
-
-def _both(size: RelaxedSize) -> tuple[float, float]:
-    return size.course_mm, size.wale_mm
 
 
 def _narrowing(
@@ -169,34 +169,20 @@ def shares_of(parts: Variances) -> dict[Part, float]:
 def _numbers(prediction: Prediction) -> Iterator[_Number]:
     for direction, ratio in zip(Direction, ("yx", "xy"), strict=True):
         along = prediction.along(direction)
-        yield _Number(
-            f"relaxed_{direction}_mm",
-            direction,
-            along.relaxed_parts,
-            lambda p, d=direction: p.along(d).relaxed_interval_mm,
-        )
-        yield _Number(
-            f"modulus_{direction}_n_per_mm",
-            direction,
-            along.strain_parts(0.0),
-            lambda p, d=direction: p.along(d).modulus_interval_n_per_mm,
-        )
-        yield _Number(
-            f"poisson_{ratio}",
-            direction,
-            along.poisson_parts,
-            lambda p, d=direction: p.along(d).poisson_interval,
-        )
+        size, modulus = f"relaxed_{direction}_mm", f"modulus_{direction}_n_per_mm"
+        yield _Number(size, direction, along.relaxed_parts, attrgetter("relaxed_interval_mm"))
+        first = along.strain_parts(0.0)
+        yield _Number(modulus, direction, first, attrgetter("modulus_interval_n_per_mm"))
+        across = along.poisson_parts
+        yield _Number(f"poisson_{ratio}", direction, across, attrgetter("poisson_interval"))
         for force in PULLS_N_PER_MM.values():
-            yield _Number(
-                f"strain_{direction}",
-                direction,
-                along.strain_parts(force),
-                lambda p, d=direction, s=force: Interval(
-                    *map(float, p.along(d).strain_interval(s))
-                ),
-                force,
-            )
+            parts, interval_of = along.strain_parts(force), partial(_strains, force)
+            yield _Number(f"strain_{direction}", direction, parts, interval_of, force)
+
+
+def _strains(n_per_mm: float, along: Along) -> Interval:
+    low, high = along.strain_interval(n_per_mm)
+    return Interval(float(low), float(high))
 
 
 def _yarn(chart: StitchChart | SymbolChart, material: Material) -> Iterator[Narrowing]:

@@ -58,7 +58,7 @@ export function narrower(studio) {
           "div",
           { title: because },
           h("button", { type: "button", class: "link", onclick: () => give(helped[0]) }, capital(how)),
-          `: ${helped.map(inNumbers).join(", ")}.`,
+          `: then ${inNumbers(helped)}.`,
         );
       }),
     );
@@ -78,11 +78,18 @@ const NAMES = {
 const isShown = ({ quantity, n_per_mm, left }, force) =>
   left !== null && quantity in NAMES && (n_per_mm === null || n_per_mm === force);
 
-/** What is left of an interval: of a stretch its ends, of a size how far it may be off. @param {Narrowing} of */
-export function inNumbers({ quantity, n_per_mm, left }) {
-  const [low, high] = left ?? [1, 1];
-  if (n_per_mm !== null) return `${NAMES[quantity]} ${percentRange([low, high])} %`;
-  return `${NAMES[quantity]} ±${percent(Math.sqrt(high / low) - 1)}`;
+/** What is left of intervals: of a stretch its ends, of sizes how far they may be off. @param {readonly Narrowing[]} all */
+export function inNumbers(all) {
+  const stretches = all
+    .filter(({ n_per_mm }) => n_per_mm !== null)
+    .map(
+      ({ quantity, left }) =>
+        `${percentRange(left ?? [])} % along ${quantity === "strain_course" ? LINES.course : LINES.wale}`,
+    );
+  const off = all
+    .filter(({ n_per_mm }) => n_per_mm === null)
+    .map(({ left }) => (left ? Math.sqrt(left[1] / left[0]) - 1 : 0));
+  return [...stretches, ...(off.length ? [`size ±${percent(Math.max(...off))}`] : [])].join(", ");
 }
 
 /** Where an interval comes from, the largest part first. @param {Narrowing} of */

@@ -22,7 +22,7 @@ from knitcore.materials.yarn_per_stitch import MeasuredYarn, mean_yarn
 from knitcore.prediction.prediction import Prediction
 
 STRESSES = [0.03, 0.1, 0.3]
-CHARTS = {
+CHARTS: dict[str, StitchChart | SymbolChart] = {
     "pure": StitchChart.parse("KP"),
     "rib": StitchChart.parse("KKPP"),
     "2-D": StitchChart.parse("KPKK/KKKP"),
@@ -47,7 +47,7 @@ def kept(promised: Interval | None, given: Interval) -> bool:
 
 @pytest.mark.parametrize("chart", CHARTS.values(), ids=CHARTS)
 @pytest.mark.parametrize("identifier", ["acrylic", "cotton"])
-def test_parts_add_up_to_the_interval(chart: StitchChart, identifier: str) -> None:
+def test_parts_add_up_to_the_interval(chart: StitchChart | SymbolChart, identifier: str) -> None:
     predicted = predict(chart, material(identifier))
     for direction in Direction:
         along = predicted.along(direction)

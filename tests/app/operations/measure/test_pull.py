@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -16,7 +17,7 @@ from tests.app.rest import post
 STRIP = ("--fabric", "rib", "--direction", "course")
 
 
-def widths(result: dict[str, list[dict[str, object]]]) -> dict[tuple[object, object], float]:
+def widths(result: dict[str, Any]) -> dict[tuple[str, str], float]:
     """Width of each interval after the pull over that before."""
     return {
         (of["fabric"], of["direction"]): (of["after_interval"][1] - of["after_interval"][0])
