@@ -270,8 +270,8 @@ def _relaxed(r: PredictResult) -> str:
 
 
 _SHORT = {
-    ("relaxed_course_mm", None): "stitch",
-    ("relaxed_wale_mm", None): "by",
+    ("relaxed_course_mm", None): "stitch width",
+    ("relaxed_wale_mm", None): "stitch height",
     ("modulus_course_n_per_mm", None): "modulus course",
     ("modulus_wale_n_per_mm", None): "modulus wale",
     ("strain_course", PULLS_N_PER_MM["hand"]): "hand pull course",
