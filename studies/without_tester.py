@@ -76,7 +76,7 @@ def _measured(known: Array, truth: Array, seed: int) -> _Draws:
     random = np.random.default_rng(seed)
     model = MixedModel.fit(known)
     true = MixedModel(truth, np.zeros((truth.size, truth.size)))
-    before = _extensions(model)[0]
+    before = extensions(model)[0]
     shifts, means, deviations = [], [], []
     for _ in range(DRAWS):
         points = [
@@ -90,15 +90,15 @@ def _measured(known: Array, truth: Array, seed: int) -> _Draws:
         ]  # fmt: skip
         off = [p.value - model.log_strain(OWN, p.direction, p.stress_n_per_mm)[0] for p in points]
         shifts.append(np.tile(np.reshape(off, (2, 2)).mean(axis=1), (4, 1)))
-        mean, deviation = _extensions(model.knowing(points))
+        mean, deviation = extensions(model.knowing(points))
         means.append(mean)
         deviations.append(deviation)
     return _Draws(
-        _extensions(true)[0], before, np.array(shifts), np.array(means), np.array(deviations)
+        extensions(true)[0], before, np.array(shifts), np.array(means), np.array(deviations)
     )
 
 
-def _extensions(model: MixedModel) -> tuple[Array, Array]:
+def extensions(model: MixedModel) -> tuple[Array, Array]:
     """Logarithms of the extensions at 0.1 N/mm, and their deviations, (4, 2)."""
     pairs = [[model.log_strain(f, d, LOAD_N_PER_MM) for d in range(2)] for f in range(4)]
     return np.moveaxis(np.array(pairs), -1, 0)[0], np.moveaxis(np.array(pairs), -1, 0)[1]

@@ -106,6 +106,7 @@ GROUPS: dict[str, dict[str, Entry]] = {
         ),
         "marks": ("measure.photos", "Write the sheet of marks for photos of a hanging swatch."),
         "photos": ("measure.photos", "Read the stretch of a hanging swatch in IMAGES."),
+        "pull": ("measure.pull", "Narrow the laws of a yarn by one stretch TEST of a fabric."),
         "swatch": ("measure.swatch", "Estimate a yarn from a swatch, without a tester."),
     }
 }

@@ -12,6 +12,7 @@ from knitcore.base.choice import Choice
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.materials.interval_parts import Part
 from knitcore.materials.law_uncertainty import LawUncertainty
 from knitcore.materials.measured_curves import MeasuredCurve
 from knitcore.materials.printed_figures import Figure
@@ -118,6 +119,11 @@ class FabricRecord:
     def stitch_mm(self) -> tuple[float, float]:
         """Relaxed width and height of one stitch."""
         return self.stitch_course_mm, self.stitch_wale_mm
+
+    @property
+    def unknown(self) -> Part:
+        """The source of the uncertainty of the law."""
+        return Part.YARN if self.origin is Origin.ESTIMATED else Part.LAW
 
     def stitch_size_mm(self, direction: Direction) -> float:
         """Relaxed extent of one stitch in a direction."""

@@ -179,11 +179,13 @@ def has_loop_length(material: Material) -> bool:
     return bool(_own_lengths(material))
 
 
-def mean_yarn(chart: StitchChart | SymbolChart, material: Material) -> tuple[float, Interval]:
+def mean_yarn(
+    chart: StitchChart | SymbolChart, material: Material, measured: MeasuredYarn | None = None
+) -> tuple[float, Interval]:
     """Yarn in the mean stitch of a chart, mm, with its 90 % interval.
 
     A yarn over takes as much as a knit, a tuck and the float of a slipped stitch less
-    (:data:`YARN_OF_TUCK`, :data:`YARN_OF_FLOAT`).
+    (:data:`YARN_OF_TUCK`, :data:`YARN_OF_FLOAT`). ``measured`` is of its knits and purls.
 
     Raises
     ------
@@ -197,7 +199,7 @@ def mean_yarn(chart: StitchChart | SymbolChart, material: Material) -> tuple[flo
     9.22
     """
     plain = chart if isinstance(chart, StitchChart) else chart.plain
-    used = yarn_per_stitch(plain, material)
+    used = yarn_per_stitch(plain, material, measured=measured)
     share = 1.0
     if not isinstance(chart, StitchChart):
         graph = chart.graph

@@ -1,5 +1,6 @@
 """Strains of a chart at given stresses, with their interval."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials import Material
+from knitcore.materials.interval_parts import Part, shared_out
 from knitcore.materials.law_uncertainty import in_a_sentence
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Source
@@ -35,6 +37,8 @@ class ChartCurve(Result):
     strain_low, strain_high : 90 % interval of the strain at each stress.
     stress_low, stress_high : the same of the stress (N/mm) at each strain; at most 10 N/mm.
     provenance : source of the curve.
+    shares : of the parts in the variance of the strain's logarithm at each stress; they add up to
+        1.
     interval_source : what its intervals rest on, in words.
     """
 
@@ -44,6 +48,7 @@ class ChartCurve(Result):
     strain_high: Array
     stress_low: Array
     stress_high: Array
+    shares: Mapping[Part, Array]
     provenance: Source
     interval_source: str
 
@@ -120,6 +125,7 @@ def curve(
         strain,
         *along.strain_interval(stress),
         *along.stress_interval(strain),
+        shared_out(np.ones_like(stress), along.strain_parts(stress)),
         prediction.provenance,
         in_a_sentence(prediction.stretch_errors),
     )

@@ -1,20 +1,14 @@
 """Stretch of a chart at the pull of a hand, with a word and its place among the yarn's fabrics."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 from knitcore.chart.fabric import Direction, Fabric
-from knitcore.chart.stitch_chart import StitchChart
-from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material
 from knitcore.materials.law_uncertainty import Interval
-from knitcore.prediction.patches import is_large
-from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Along, Prediction
-from knitcore.prediction.size import RelaxedSize
 
 PULLS_N_PER_MM = {"light": 0.03, "hand": 0.1, "firm": 0.3}
 """Forces per width of cloth: a hand that feels, that tries, and that tugs. The middle one is 10 N
@@ -35,15 +29,12 @@ class HandStretch:
     ----------
     strain : from the size at rest, the other direction free.
     strain_interval : its 90 % interval.
-    strain_with_gauge : the interval if a gauge of this chart were counted; None if the size is
-        known, or the chart is predicted in patches.
     word : from firm to very stretchy.
     more_than, less_than : pure fabrics of the same yarn that stretch less, and that stretch more.
     """
 
     strain: float
     strain_interval: Interval
-    strain_with_gauge: Interval | None
     word: str
     more_than: tuple[Fabric, ...]
     less_than: tuple[Fabric, ...]
@@ -66,45 +57,19 @@ class HandPull:
     wale: HandStretch
 
 
-def hand_pulls(
-    chart: StitchChart | SymbolChart, material: Material, prediction: Prediction
-) -> tuple[HandPull, ...]:
-    """Tell how far a chart stretches at a light, a usual and a firm pull.
-
-    Parameters
-    ----------
-    chart, material : of the prediction.
-    """
-    counted = None
-    if not prediction.size_is_known and not is_large(
-        chart if isinstance(chart, StitchChart) else chart.plain
-    ):
-        size = RelaxedSize(prediction.relaxed_course_mm, prediction.relaxed_wale_mm)
-        counted = predict(chart, material, size)
-    along = {
-        direction: _stretches(
-            prediction.along(direction),
-            None if counted is None else counted.along(direction),
-            material,
-            direction,
-        )
-        for direction in Direction
-    }
+def hand_pulls(material: Material, prediction: Prediction) -> tuple[HandPull, ...]:
+    """Tell how far a chart of a material stretches at a light, a usual and a firm pull."""
+    along = {d: _stretches(prediction.along(d), material, d) for d in Direction}
     return tuple(
         HandPull(pull, force, along[Direction.COURSE][k], along[Direction.WALE][k])
         for k, (pull, force) in enumerate(PULLS_N_PER_MM.items())
     )
 
 
-def _stretches(
-    along: Along, counted: Along | None, material: Material, direction: Direction
-) -> list[HandStretch]:
+def _stretches(along: Along, material: Material, direction: Direction) -> list[HandStretch]:
     forces = tuple(PULLS_N_PER_MM.values())
     strains = along.strain(forces).tolist()
-    intervals = _intervals(along)
-    narrowed: Sequence[Interval | None] = [None] * len(forces)
-    if counted is not None:
-        narrowed = _intervals(counted)
+    low, high = (ends.tolist() for ends in along.strain_interval(forces))
     pure = {
         fabric: _strains(record.law, direction, forces)
         for fabric, record in material.fabrics.items()
@@ -112,19 +77,13 @@ def _stretches(
     return [
         HandStretch(
             strain,
-            intervals[k],
-            narrowed[k],
+            Interval(low[k], high[k]),
             next((word for below, word in _WORDS if strain < below), _MOST),
             tuple(fabric for fabric, of in pure.items() if strain > _ALIKE * of[k]),
             tuple(fabric for fabric, of in pure.items() if of[k] > _ALIKE * strain),
         )
         for k, strain in enumerate(strains)
     ]
-
-
-def _intervals(along: Along) -> list[Interval]:
-    low, high = along.strain_interval(tuple(PULLS_N_PER_MM.values()))
-    return [Interval(*ends) for ends in zip(low.tolist(), high.tolist(), strict=True)]
 
 
 @lru_cache(maxsize=512)

@@ -30,6 +30,7 @@ from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.materials import Material, Origin
+from knitcore.materials.interval_parts import Part, Variances, added, deviation, shared_out
 from knitcore.prediction.densities import Densities, densities
 from knitcore.prediction.mixture import Mixture, present, pure_numbers
 from knitcore.prediction.size import RelaxedSize
@@ -73,19 +74,32 @@ class LearnedResponse(Result):
 
     Attributes
     ----------
-    size_mm, size_log_sd : (2,) width and height of the mean stitch at rest.
+    size_mm : (2,) width and height of the mean stitch at rest.
+    size_parts : (2,) variances of their logarithms, by part.
     mixture : the mixture of pure fabrics that was corrected.
-    log_ratio, log_ratio_sd : (2, stresses) ln of strain over that of the mixture, by direction.
-    poisson, poisson_sd : (2,) nu_yx and nu_xy: mean slopes up to 0.3 N/mm.
+    log_ratio : (2, stresses) ln of strain over that of the mixture, by direction.
+    log_ratio_parts : (2, stresses) its variances, by part.
+    poisson : (2,) nu_yx and nu_xy: mean slopes up to 0.3 N/mm.
+    poisson_parts : (2,) their variances, by part.
     """
 
     size_mm: Array
-    size_log_sd: Array
+    size_parts: Variances
     mixture: Mixture
     log_ratio: Array
-    log_ratio_sd: Array
+    log_ratio_parts: Variances
     poisson: Array
-    poisson_sd: Array
+    poisson_parts: Variances
+
+    @property
+    def size_log_sd(self) -> Array:
+        """(2,) standard deviations of the logarithms of width and height."""
+        return deviation(self.size_parts)
+
+    @property
+    def log_ratio_sd(self) -> Array:
+        """(2, stresses) standard deviations of the corrections."""
+        return deviation(self.log_ratio_parts)
 
     def strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Strain at stresses (N/mm, at least 0)."""
@@ -115,6 +129,14 @@ class LearnedResponse(Result):
         """Standard deviation of the log strain: of the learning, and of the pure fabrics' laws."""
         own = self._at(self.log_ratio_sd, direction, stress_n_per_mm)
         return np.asarray(np.hypot(own, self.mixture.log_sd(direction, stress_n_per_mm)))
+
+    def strain_parts(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Variances:
+        """Variances of the log strain, by part; those of the modulus where there is no stress."""
+        first = STRESS_GRID[0] * self.mixture.bending_stress_n_per_mm
+        stress = np.where(np.asarray(stress_n_per_mm) > 0, stress_n_per_mm, first)
+        own = np.square(self._at(self.log_ratio_sd, direction, stress))
+        among = {part: self._at(of, direction, stress) for part, of in self.log_ratio_parts.items()}
+        return added([shared_out(own, among), *self.mixture.variances(direction, stress)])
 
     def modulus_n_per_mm(self, direction: Direction) -> float:
         """Initial Young's modulus."""
@@ -235,21 +257,25 @@ class LearnedModel:
         flat_mm = mixture.size_mm
         if size is not None:
             fold = np.log(np.array([size.course_mm, size.wale_mm]) / flat_mm)
-            fold_sd = np.full(2, size.log_sd)
+            size_parts = {Part.SIZE: np.full(2, size.log_sd**2)}
         else:
             fold, fold_sd = self.folded(*folding, composition, simulated=mixture.simulated)
+            size_parts = {Part.SIZE: fold_sd**2}
         mean, variance = unfolding
         values = mean + slopes @ fold
         spread = composition.uncertainty @ self.unfolding_scale
-        deviations = np.sqrt(spread**2 * variance + slopes**2 @ fold_sd**2)
+        parts = {
+            Part.SIZE: slopes**2 @ size_parts[Part.SIZE],
+            Part.SURROUNDINGS: spread**2 * variance,
+        }
         return LearnedResponse(
             size_mm=flat_mm * np.exp(fold),
-            size_log_sd=fold_sd,
+            size_parts=size_parts,
             mixture=mixture,
             log_ratio=values[:12].reshape(2, -1),
-            log_ratio_sd=deviations[:12].reshape(2, -1),
+            log_ratio_parts={part: of[:12].reshape(2, -1) for part, of in parts.items()},
             poisson=mixture.poisson + values[12:],
-            poisson_sd=deviations[12:],
+            poisson_parts={part: of[12:] for part, of in parts.items()},
         )
 
     def folded(

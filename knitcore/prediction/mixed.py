@@ -11,6 +11,7 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.response import Response
 from knitcore.materials import Interval, Material
+from knitcore.materials.interval_parts import Part, Variances, added, shared_out
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.densities import Densities
 from knitcore.prediction.learned import LearnedResponse, SweptChart
@@ -91,7 +92,11 @@ def _along(
 ) -> Along:
     response = _response(learned, direction)
     parts = learned.mixture.parts
+    axis = direction.axis
     own_poisson_sd = pure * sum(share * r.uncertainty.poisson(direction) for share, r in parts)
+    own_poisson = shared_out(
+        np.asarray(own_poisson_sd**2), added({r.unknown: np.asarray(s)} for s, r in parts)
+    )
     held = float(learned.mixture.shares_of_strain(direction, 0.0)[1])
     bounds = (*learned.mixture.bounds_n_per_mm(direction), response.modulus_n_per_mm)
     return Along(
@@ -100,12 +105,19 @@ def _along(
         _response(learned, direction, Z_SCORE),
         partial(learned.across_strain, direction),
         Response(response.modulus_n_per_mm / held, partial(learned.held_strain, direction)),
-        poisson=float(learned.poisson[direction.axis]),
-        poisson_sd=math.hypot(learned.poisson_sd[direction.axis], own_poisson_sd),
-        relaxed_mm=float(learned.size_mm[direction.axis]),
-        relaxed_log_sd=math.hypot(learned.size_log_sd[direction.axis], own_size_log_sd),
+        poisson=float(learned.poisson[axis]),
+        poisson_parts=added([_of_axis(learned.poisson_parts, axis), own_poisson]),
+        relaxed_mm=float(learned.size_mm[axis]),
+        relaxed_parts=added(
+            [_of_axis(learned.size_parts, axis), {Part.SIZE: np.asarray(own_size_log_sd**2)}]
+        ),
+        strain_parts=partial(learned.strain_parts, direction),
         bounds_n_per_mm=Interval(min(bounds), max(bounds)),
     )
+
+
+def _of_axis(parts: Variances, axis: int) -> Variances:
+    return {part: of[axis] for part, of in parts.items()}
 
 
 def _response(learned: LearnedResponse, direction: Direction, deviations: float = 0.0) -> Response:

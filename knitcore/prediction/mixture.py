@@ -24,6 +24,7 @@ from knitcore.law.uniaxial import (
     held_strains_at_stress,
 )
 from knitcore.materials import FabricRecord, Material, Origin
+from knitcore.materials.interval_parts import Part, added, deviation
 from knitcore.yarn.library.yarns import yarn_for
 from knitcore.yarn.model.yarn_model import YarnModel
 
@@ -118,6 +119,12 @@ class Mixture:
 
         It applies to a law's scale of stress, so it changes strains less near the lock-up.
         """
+        return deviation(added(self.variances(direction, stress_n_per_mm)))
+
+    def variances(
+        self, direction: Direction, stress_n_per_mm: ArrayLike
+    ) -> list[dict[Part, Array]]:
+        """Variances of the log strain from the uncertainty of each fabric's law."""
         strains = np.array(self._strains(direction, stress_n_per_mm))
         total = strains.sum(axis=0)
         deviations = np.array(
@@ -128,7 +135,8 @@ class Mixture:
             ]
         )
         shares = np.divide(strains, total, out=np.zeros_like(strains), where=total > 0)
-        return np.asarray(np.sqrt(np.sum((deviations * shares) ** 2, axis=0)))
+        squares = (deviations * shares) ** 2
+        return [{r.unknown: square} for (_, r), square in zip(self.parts, squares, strict=True)]
 
     def _strains(self, direction: Direction, stress_n_per_mm: ArrayLike) -> list[Array]:
         return [

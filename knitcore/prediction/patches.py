@@ -29,6 +29,7 @@ from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material
+from knitcore.materials.interval_parts import Variances, added, deviation, shared_out
 from knitcore.prediction.densities import Densities, densities, densities_of
 from knitcore.prediction.learned import packaged_model
 from knitcore.prediction.mixed import predict_mixed
@@ -130,6 +131,16 @@ class Patches:
         def mean(of: Callable[[Along], float]) -> float:
             return float(share @ [of(part) for part in parts])
 
+        def together(of: Callable[[Along], Variances]) -> Variances:
+            """Variances of patches that err alike: the deviations have a mean."""
+            each = [of(part) for part in parts]
+            mean_sd = np.tensordot(share, [deviation(part) for part in each], axes=1)
+            weighted = [
+                {name: s * of for name, of in part.items()}
+                for s, part in zip(share, each, strict=True)
+            ]
+            return shared_out(np.square(mean_sd), added(weighted))
+
         def across(stress: ArrayLike) -> Array:
             return np.tensordot(share, [part.across(stress) for part in parts], axes=1)
 
@@ -145,9 +156,10 @@ class Patches:
             across,
             held,
             poisson=mean(lambda part: part.poisson),
-            poisson_sd=mean(lambda part: part.poisson_sd),
+            poisson_parts=together(lambda part: part.poisson_parts),
             relaxed_mm=self.relaxed_mm(direction),
-            relaxed_log_sd=mean(lambda part: part.relaxed_log_sd),
+            relaxed_parts=together(lambda part: part.relaxed_parts),
+            strain_parts=lambda stress: together(lambda part: part.strain_parts(stress)),
             bounds_n_per_mm=Interval(
                 min(modulus, *(part.bounds_n_per_mm.low for part in parts)),
                 max(modulus, *(part.bounds_n_per_mm.high for part in parts)),

@@ -16,6 +16,7 @@ from knitcore.base.errors import InputError
 from knitcore.base.kinds import as_numbers
 from knitcore.chart.fabric import Direction
 from knitcore.law.response import Response
+from knitcore.materials.interval_parts import Part, Variances, deviation
 from knitcore.materials.law_uncertainty import Interval, log_interval, normal_interval
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
@@ -44,9 +45,11 @@ class Along:
     stiff, soft : the ends of its 90 % interval, as responses.
     across : strains across the pull at stresses.
     held : stretch under stress while the width is held.
-    poisson, poisson_sd : contraction across the pull over the strain along it, at small strain.
-    relaxed_mm, relaxed_log_sd : extent of the mean stitch at rest, and the standard deviation of
-        its logarithm.
+    poisson, poisson_parts : contraction across the pull over the strain along it, at small strain,
+        and its variance by part.
+    relaxed_mm, relaxed_parts : extent of the mean stitch at rest, and the variance of its logarithm
+        by part.
+    strain_parts : variances of the logarithm of the strain at stresses, by part.
     bounds_n_per_mm : of the modulus: Reuss and Voigt bounds of the pure fabrics in the chart,
         widened to the modulus where folds put it outside.
     """
@@ -57,9 +60,10 @@ class Along:
     across: Callable[[ArrayLike], Array]
     held: Response
     poisson: float
-    poisson_sd: float
+    poisson_parts: Variances
     relaxed_mm: float
-    relaxed_log_sd: float
+    relaxed_parts: Variances
+    strain_parts: Callable[[ArrayLike], Variances]
     bounds_n_per_mm: Interval
 
     def __repr__(self) -> str:
@@ -79,6 +83,16 @@ class Along:
     def extensibility_interval_mm_per_n(self) -> Interval:
         """90 % interval of 1 / Y."""
         return Interval(1 / self.stiff.modulus_n_per_mm, 1 / self.soft.modulus_n_per_mm)
+
+    @property
+    def poisson_sd(self) -> float:
+        """Standard deviation of the contraction."""
+        return float(deviation(self.poisson_parts))
+
+    @property
+    def relaxed_log_sd(self) -> float:
+        """Standard deviation of the logarithm of the relaxed extent."""
+        return float(deviation(self.relaxed_parts))
 
     @property
     def poisson_interval(self) -> Interval:
@@ -170,7 +184,11 @@ class Prediction:
     def with_size(self, relaxed: RelaxedSize) -> Prediction:
         """The prediction with a known relaxed size, and the same stretch from it."""
         course, wale = (
-            replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
+            replace(
+                self.along(d),
+                relaxed_mm=relaxed.extent_mm(d),
+                relaxed_parts={Part.SIZE: np.asarray(relaxed.log_sd**2)},
+            )
             for d in Direction
         )
         known_by = relaxed.known_by

@@ -31,6 +31,8 @@ from knitcore.chart.stitch_kinds import STITCHES, YarnAct
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.law.response import Response
 from knitcore.materials import Interval, Material
+from knitcore.materials.interval_parts import Part, Variances, deviation
+from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.densities import densities
 from knitcore.prediction.mixture import Mixture
 from knitcore.prediction.prediction import Along, Prediction, Source
@@ -168,9 +170,15 @@ def with_other_stitches(
     if size_is_known:
         return changed
     logs, log_sd = log_sizes(chart, material, plain)
+    fade = math.exp(-StitchDensities.of(chart).share / FADE)
+    kept = ({part: fade * of for part, of in a.relaxed_parts.items()} for a in (course, wale))
     course, wale = (
-        replace(along, relaxed_mm=math.exp(log), relaxed_log_sd=float(sd))
-        for along, log, sd in zip((course, wale), logs, log_sd, strict=True)
+        replace(
+            along,
+            relaxed_mm=math.exp(log),
+            relaxed_parts=own | {Part.OTHER_STITCHES: sd**2 - deviation(own) ** 2},
+        )
+        for along, own, log, sd in zip((course, wale), kept, logs, log_sd, strict=True)
     )
     used = [effects()[kind] for kind in _present(chart)]
     sources = tuple(dict.fromkeys(effect.source for effect in used)) or plain.size_errors
@@ -198,13 +206,24 @@ def _notes(chart: SymbolChart) -> list[str]:
 def _wider(along: Along) -> Along:
     """Widen the intervals of a response."""
     low, high = along.bounds_n_per_mm
+
+    def parts(stress: ArrayLike) -> Variances:
+        return _with_more(along.strain_parts(stress), math.log(STRETCH_FACTOR) / Z_SCORE)
+
     return replace(
         along,
         stiff=_scaled(along.stiff, 1 / STRETCH_FACTOR),
         soft=_scaled(along.soft, STRETCH_FACTOR),
-        poisson_sd=STRETCH_FACTOR * along.poisson_sd,
+        poisson_parts=_with_more(along.poisson_parts, (STRETCH_FACTOR - 1) * along.poisson_sd),
+        strain_parts=parts,
         bounds_n_per_mm=Interval(low / STRETCH_FACTOR, high * STRETCH_FACTOR),
     )
+
+
+def _with_more(parts: Variances, more: float) -> Variances:
+    """Parts with a deviation that is added to theirs, as that of the other stitches."""
+    own = deviation(parts)
+    return {**parts, Part.OTHER_STITCHES: np.asarray((own + more) ** 2 - own**2)}
 
 
 def _scaled(response: Response, factor: float) -> Response:

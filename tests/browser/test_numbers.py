@@ -69,13 +69,14 @@ def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
     expect(source).to_have_text(LEARNED)
     guessed = size.inner_text()
     source.click()
-    expect(page.locator("#gauge-brings")).to_contain_text("narrows the size")
+    page.get_by_role("button", name="Count the gauge of your swatch").click()
+    expect(page.locator("#own-gauge-stitches")).to_be_focused()
     page.fill("#own-gauge-stitches", "25")
     page.fill("#own-gauge-rows", "36")
     page.press("#own-gauge-rows", "Enter")
     expect(source).to_have_text(f"{LEARNED} and a known size")
     expect(size).to_have_text("4.80")  # 12 stitches
-    expect(page.locator("#gauge-brings")).to_be_empty()
+    expect(page.locator("#narrower")).not_to_contain_text("Count the gauge")
     with page.expect_request("**/api/v1/jobs") as sent:
         page.click("#stretch-run")
     counted = {"stitches_per_10_cm": 25, "rows_per_10_cm": 36}
@@ -146,7 +147,7 @@ def test_a_counted_gauge_counts_in_3d_in_tests_and_in_a_fill(visitor: Page, serv
     page.click("#part-add")
     expect(page.locator("#parts-uncounted")).to_contain_text("parts of it have their computed size")
     count("22", "30")
-    expect(page.locator("#gauge-brings")).to_contain_text("of this part only")
+    expect(page.locator("#gauge-scope")).to_contain_text("of this part only")
     expect(page.locator("#parts-uncounted")).to_be_hidden()
 
 

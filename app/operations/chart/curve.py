@@ -10,6 +10,7 @@ from pydantic import Field
 
 from knitcore.base.errors import check_cancelled
 from knitcore.chart.fabric import Direction
+from knitcore.materials.interval_parts import Part
 from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.prediction.curve import curve as chart_curve
 
@@ -44,6 +45,10 @@ class CurveResult(IntervalResult):
     stress_interval_n_per_mm: EndsOfList = Field(
         description="Stress interval at each strain; at most 10 N/mm."
     )
+    shares: dict[Part, Floats] = Field(
+        description="Shares of what is unknown in the variance of the strain's logarithm, at each "
+        "stress."
+    )
     provenance: str
 
 
@@ -76,7 +81,9 @@ def _lines(r: CurveResult) -> list[str]:
     lines += [
         f"{s:8.4f} {e:8.4f}   {a:.4f} to {b:.4f}" for s, e, a, b in zip(*columns, strict=True)
     ]
-    return [*lines, f"source: {r.provenance}"]
+    largest = max(r.shares, key=lambda part: r.shares[part][-1])
+    share = f"{r.shares[largest][-1]:.0%} of the last interval's variance is from: {largest}"
+    return [*lines, share, f"source: {r.provenance}"]
 
 
 OPERATION = Operation(

@@ -8,11 +8,13 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.segments import SegmentCounts, segment_map
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
 from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
+from knitcore.design.certainty import Remedy, narrowings
 from knitcore.draw.laid_out import size_at_rest
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.materials import Material
+from knitcore.materials.interval_parts import Part
 from knitcore.materials.yarn_per_stitch import has_loop_length, mean_yarn
-from knitcore.prediction.hand import hand_pulls
+from knitcore.prediction.hand import PULLS_N_PER_MM, hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
 from knitcore.prediction.stitch_effects import StitchDensities
 from knitcore.prediction.swept import worth_relaxing
@@ -40,10 +42,6 @@ class HandStretchResult(ResultModel):
 
     strain: float = Field(description="From the size at rest, the other direction free.")
     strain_interval: Ends
-    strain_with_gauge: Ends | None = Field(
-        description="The interval if a gauge of this chart were counted; null if it is known, or "
-        "in a chart that is predicted in patches."
-    )
     word: Literal["firm", "slightly stretchy", "stretchy", "very stretchy"]
     more_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch less.")
     less_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch more.")
@@ -56,6 +54,30 @@ class HandPullResult(ResultModel):
     n_per_mm: float = Field(description="Force per width of cloth: 0.1 N/mm is 10 N on 10 cm.")
     course: HandStretchResult
     wale: HandStretchResult
+
+
+class NarrowingResult(ResultModel):
+    """Where the interval of a number comes from, and what would narrow it."""
+
+    quantity: str = Field(
+        description="Field of the number in this result; strain_course or strain_wale for the "
+        "stretch at a pull."
+    )
+    n_per_mm: float | None = Field(description="Force per width of a strain, else null.")
+    shares: dict[Part, float] = Field(
+        description="Shares of the parts in the variance of the logarithm (of a Poisson's ratio, "
+        "of its own variance), the largest first."
+    )
+    interval: Ends = Field(description="In the unit of the quantity.")
+    act: Remedy | None = Field(
+        description="What would remove the largest part that can be: a gauge counted "
+        "(`gauge`), a swatch weighed (`yarn_per_stitch_mm` of a garment), or a strip pulled "
+        "(`measure pull`); null if nothing helps."
+    )
+    how: str = Field(description="The same in words; empty if nothing helps.")
+    left: Ends | None = Field(description="The interval after it.")
+    fabric: Fabric | None = Field(description="Of the strip to pull.")
+    direction: Direction | None = Field(description="In which it is pulled.")
 
 
 class SegmentCountsResult(ResultModel, SegmentCounts):
@@ -119,6 +141,9 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
     )
     notes: list[str]
     hand: list[HandPullResult] = Field(description="By growing pull; empty unless asked for.")
+    narrowing: list[NarrowingResult] = Field(
+        description="What the intervals come from, and what would narrow them."
+    )
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
@@ -148,7 +173,8 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         if isinstance(described, StitchChart)
         else _others(described, predicted.relaxed_course_mm),
         "notes": [*notes, *predicted.notes],
-        "hand": hand_pulls(described, material, predicted) if request.hand else [],
+        "narrowing": narrowings(described, material, predicted),
+        "hand": hand_pulls(material, predicted) if request.hand else [],
     }
     whole_piece = vars(size_at_rest(shaped, material, predicted))
     return PredictResult.model_validate(predicted.to_dict() | whole_piece | given)
@@ -190,6 +216,7 @@ def _lines(r: PredictResult) -> list[str]:
         *_yarn_line(r),
         *_others_line(r),
         *(_hand_line(pull) for pull in r.hand),
+        *_narrowing_lines(r),
         f"source          {r.provenance} ({r.method})",
     ]
 
@@ -200,6 +227,18 @@ def _hand_line(pull: HandPullResult) -> str:
         low, high = of.strain_interval
         along.append(f"{direction} {of.strain:.0%} ({low:.0%} to {high:.0%}, {of.word})")
     return f"{pull.pull + ' pull':<16}{'   '.join(along)} at {pull.n_per_mm:g} N/mm"
+
+
+def _narrowing_lines(r: PredictResult) -> list[str]:
+    """A line for each act, with the intervals that it would leave."""
+    shown = dict(_SHORT) if r.hand else {k: v for k, v in _SHORT.items() if k[1] is None}
+    lines: dict[str, list[str]] = {}
+    for of in r.narrowing:
+        name = shown.get((of.quantity, of.n_per_mm))
+        if of.left is not None and name:
+            low, high = of.left
+            lines.setdefault(of.how, []).append(f"{name} {low:.3g} to {high:.3g}")
+    return [f"to narrow       {how}: {', '.join(left)}" for how, left in lines.items()]
 
 
 def _yarn_line(r: PredictResult) -> list[str]:
@@ -230,6 +269,16 @@ def _relaxed(r: PredictResult) -> str:
     )
 
 
+_SHORT = {
+    ("relaxed_course_mm", None): "stitch width",
+    ("relaxed_wale_mm", None): "stitch height",
+    ("modulus_course_n_per_mm", None): "modulus course",
+    ("modulus_wale_n_per_mm", None): "modulus wale",
+    ("strain_course", PULLS_N_PER_MM["hand"]): "hand pull course",
+    ("strain_wale", PULLS_N_PER_MM["hand"]): "hand pull wale",
+    ("yarn_per_stitch_mm", None): "yarn",
+}
+"""Words for the numbers that the command prints."""
 OPERATION = Operation(
     predict,
     tag="mechanics",

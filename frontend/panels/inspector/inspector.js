@@ -20,6 +20,7 @@ import { curvePlot } from "../../plots/curve.js";
 import { rigidityPlot } from "../../plots/rigidity.js";
 import { drape } from "./drape.js";
 import { limb } from "./limb.js";
+import { narrower } from "./narrower.js";
 import { ownGauge } from "./owngauge.js";
 import { segmented } from "../../widgets/fields.js";
 import { problemText } from "../../widgets/problem.js";
@@ -49,6 +50,7 @@ export function inspector(host, studio) {
     },
   });
   const gauge = ownGauge(studio);
+  const narrow = narrower(studio);
   const provenance = h("summary", { id: "provenance", title: "Where these numbers come from" });
   const notes = h("ul", { class: "notes" });
   const source = h("details", { class: "source small muted" }, provenance, notes);
@@ -146,6 +148,7 @@ export function inspector(host, studio) {
     plain,
     h("div", { class: "line gap-8 spread small" }, h("span", { class: "muted" }, "At a pull of"), hands.element),
     felt,
+    narrow.element,
     rank,
     gauge.element,
     compared,
@@ -188,7 +191,7 @@ export function inspector(host, studio) {
     others.textContent = value?.other_stitches ? othersInWords(value) : "";
     plain.textContent = value ? remarksOn(studio, part).note : "";
     source.hidden = !value;
-    gauge.show(value);
+    gauge.show();
     if (value) {
       const lines = [
         part.note,
@@ -204,6 +207,7 @@ export function inspector(host, studio) {
   const feel = (value, part) => {
     const pull = value?.hand.find((each) => each.pull === handPull.value);
     const size = value && sizeAtRest(part, value);
+    narrow.show(value, handPull.value);
     felt.replaceChildren(
       columnHeads(),
       h(

@@ -240,7 +240,7 @@ def yarn_without_tester(
     for direction in DIRECTIONS:
         pulled = [point for point in points if point.direction is direction]
         if pulled:
-            used += [_log_strain(point) for point in pulled]
+            used += [log_strain(point) for point in pulled]
             model = _law_model(()).knowing(used)
             add(f"{source}, pulled {direction}-wise")
     notes += _hints(swatch, points)
@@ -401,7 +401,8 @@ def _note_apart(
 # -- the laws ----------------------------------------------------------------------------------
 
 
-def _log_strain(point: StretchPoint) -> LogStrain:
+def log_strain(point: StretchPoint) -> LogStrain:
+    """A point as the mixed model takes it, with the scatter of strains that are read once."""
     error = point.strain_along_sd / point.strain_along
     return LogStrain(
         FABRICS.index(point.fabric),

@@ -7,14 +7,13 @@ import pytest
 from knitcore import Fabric, StitchChart, material, predict
 from knitcore.materials import load_library
 from knitcore.prediction.hand import PULLS_N_PER_MM, HandPull, hand_pulls
-from knitcore.prediction.size import RelaxedSize
 
 ACRYLIC = material("acrylic")
 RIB = StitchChart.parse("KKPP")
 
 
-def pulls_of(chart: StitchChart, size: RelaxedSize | None = None) -> tuple[HandPull, ...]:
-    return hand_pulls(chart, ACRYLIC, predict(chart, ACRYLIC, size))
+def pulls_of(chart: StitchChart) -> tuple[HandPull, ...]:
+    return hand_pulls(ACRYLIC, predict(chart, ACRYLIC))
 
 
 def test_stretches_are_those_of_the_predicted_curve() -> None:
@@ -52,17 +51,6 @@ def test_words_go_by_the_stretch() -> None:
     assert {words[rank] for rank in ranks} >= set(words[1:])
 
 
-def test_a_counted_gauge_narrows_a_mixed_chart() -> None:
-    along = pulls_of(RIB)[1].course
-    assert along.strain_with_gauge is not None
-    assert along.strain_with_gauge.high < along.strain_interval.high
-    assert along.strain_with_gauge.low > along.strain_interval.low
-    known = pulls_of(RIB, RelaxedSize(2.3, 2.8))[1].course
-    assert known.strain_with_gauge is None
-    patches = StitchChart(np.arange(20 * 20).reshape(20, 20) % 7 == 0)
-    assert pulls_of(patches)[1].course.strain_with_gauge is None
-
-
 GALLERY = Path(__file__).parents[3] / "frontend" / "panels" / "gallery" / "examples.js"
 
 
@@ -73,7 +61,7 @@ def test_the_gallery_of_the_page_says_what_the_numbers_say() -> None:
     )
     for yarn in load_library().values():
         pulls = {
-            fabric: hand_pulls(chart, yarn, predict(chart, yarn))[1]
+            fabric: hand_pulls(yarn, predict(chart, yarn))[1]
             for fabric in Fabric
             for chart in [StitchChart.of_fabric(fabric)]
         }

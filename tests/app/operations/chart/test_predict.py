@@ -141,3 +141,27 @@ def test_the_yarn_of_a_stitch_is_given_if_it_is_known(client: TestClient) -> Non
     assert slipped["yarn_per_stitch_mm"] < knit["yarn_per_stitch_mm"]
     assert knit["other_stitches"] is None
     assert slipped["other_stitches"]["longest_float_mm"] > slipped["relaxed_course_mm"]
+
+
+def test_what_would_narrow_an_interval_does_so_over_rest(client: TestClient) -> None:
+    body = {"chart": "KKPP", "material": "acrylic", "hand": True}
+    first = post(client, "predict", body)
+    narrowing = {(n["quantity"], n["n_per_mm"]): n for n in first["narrowing"]}
+    stretch = narrowing["strain_course", 0.1]
+    assert stretch["act"] == "count"
+    assert next(iter(stretch["shares"])) == "size at rest"
+    assert stretch["interval"] == first["hand"][1]["course"]["strain_interval"]
+    gauge = {
+        "stitches_per_10_cm": 100 / first["relaxed_course_mm"],
+        "rows_per_10_cm": 100 / first["relaxed_wale_mm"],
+    }
+    counted = post(client, "predict", {**body, "gauge": gauge})
+    assert counted["hand"][1]["course"]["strain_interval"] == pytest.approx(stretch["left"])
+    shares = post(client, "curve", {**body_of(body), "stress_n_per_mm": [0.1]})["shares"]
+    for part, share in stretch["shares"].items():
+        assert shares[part] == pytest.approx([share])
+
+
+def body_of(body: dict[str, object]) -> dict[str, object]:
+    """The same chart, pulled along its rows."""
+    return {name: body[name] for name in ("chart", "material")} | {"direction": "course"}
