@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 from collections import Counter, OrderedDict, deque
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -164,8 +164,14 @@ class FairLock:
         )
 
     @contextlib.asynccontextmanager
-    async def turn(self, owner: str) -> AsyncIterator[None]:
+    async def turn(
+        self, owner: str, *, rest: Callable[[], float] = lambda: 0.0
+    ) -> AsyncIterator[None]:
         """Wait for a turn, and hold it while the block runs.
+
+        Parameters
+        ----------
+        rest : seconds for which nobody has a turn after the block.
 
         Raises
         ------
@@ -177,4 +183,7 @@ class FairLock:
             await asyncio.wait([queued.place])
             yield
         finally:
-            self._queue.leave(queued)
+            if rest_s := rest():
+                asyncio.get_running_loop().call_later(rest_s, self._queue.leave, queued)
+            else:
+                self._queue.leave(queued)

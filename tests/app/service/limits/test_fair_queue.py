@@ -126,3 +126,18 @@ async def test_a_fair_lock_lets_one_through_at_a_time_and_its_turns_are_given_ba
     await asyncio.gather(*line, return_exceptions=True)
     assert most == 1
     assert (len(order), order.index("b")) == (5, 2)
+
+
+async def test_a_lock_that_rests_lets_others_work_first() -> None:
+    lock, events = FairLock(), []
+
+    async def come(name: str) -> None:
+        async with lock.turn("a", rest=lambda: 0.01):
+            events.append(name)
+
+    loop = asyncio.get_running_loop()
+    first, second = asyncio.create_task(come("first")), asyncio.create_task(come("second"))
+    await first
+    loop.call_soon(events.append, "another's work")
+    await second
+    assert events == ["first", "another's work", "second"]

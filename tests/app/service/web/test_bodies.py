@@ -20,7 +20,13 @@ from app.service.identity import LOCAL_USER, current_user
 from app.service.limits.user_limits import USER_LIMITS
 from app.service.main import THREADS, THREADS_EACH
 from app.service.store.database import Database
-from app.service.web.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
+from app.service.web.bodies import (
+    MAX_DECODED_BYTES,
+    MAX_NAMES,
+    MAX_VALUES,
+    SMALL_BYTES,
+    BoundedRoute,
+)
 from app.service.web.security import GONE
 from tests.app.clients import limited, login, served, state_of
 from tests.app.running import wait_until
@@ -168,6 +174,13 @@ def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
     body = b"[" + b",".join([nest] * (MAX_VALUES // deep)) + b"]"
     refused = _post(client, "designs", body)
     assert (refused.status_code, refused.json()["type"]) == (413, "/problems/refused")
+
+
+def test_more_names_than_the_service_reads_are_refused(client: TestClient) -> None:
+    body = json.dumps({str(number): 1 for number in range(MAX_NAMES + 1)}).encode()
+    answer = _post(client, "designs", body)
+    assert (answer.status_code, answer.json()["field"]) == (413, "body")
+    assert str(MAX_NAMES) in answer.json()["detail"]
 
 
 def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
