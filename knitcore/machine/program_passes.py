@@ -248,7 +248,11 @@ class _Reader:
             (last.kind, last.carriers, last.rack) == (kind, tuple(carriers), self._rack)
             and (kind == "drop" or last.rightwards == rightwards)
         )
-        onward = last is not None and (at >= last.high if rightwards else at <= last.low)
+        onward = last is not None and (
+            operation == "miss"
+            or not last.loops
+            or (at > last.high if rightwards else at < last.low)
+        )
         if last is None or not (same and (onward or kind == "drop")):
             last = ProgramPass(kind, self._line, self._rack, rightwards)
             last.carriers = tuple(carriers)
