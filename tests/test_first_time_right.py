@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart, material
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.designs.layout import layout_of
 from knitcore.formats.read.knitout_reader import knitted_chart, verified
 from knitcore.formats.write.export import ExportKind, ExportOptions, export_chart
@@ -25,6 +26,7 @@ from knitcore.machine.program_check import check_program
 from knitcore.machine.setting import setting_of
 from studies.five_designs import designs
 from tests.knitcore.pieces import pieces
+from tests.knitcore.symbol_charts import symbol_charts
 
 ALL = list(profiles().values())
 PROGRAMMED = [machine for machine in ALL if machine.reads_programs]
@@ -209,3 +211,52 @@ def test_any_chart_is_knitted_or_refused_with_what_helps(
                 export_chart(piece.chart, kind, material(yarn), ExportOptions(layout=layout))
     except InputError as error:
         assert error.remedy  # noqa: PT017 - a refusal with its reason is right
+
+
+def stitches_are_knitted_or_refused(
+    machine: MachineProfile, chart: SymbolChart, finish: Finish
+) -> None:
+    """And passes are too many only where the user is told so."""
+    machine = replace(machine, waste_passes=4)
+    setting = setting_of(Piece.plain(chart.plain), machine, WOOL)
+    try:
+        made = verified(
+            chart,
+            finish=finish,
+            machine=machine,
+            stitch_number=setting.number,
+            yarn=setting.yarn,
+            looser=setting.looser,
+        )
+    except InputError as refusal:
+        assert refusal.remedy  # noqa: PT017 - a refusal with its reason is right
+        assert re.search("row [0-9]+, stitch|course [0-9]+", str(refusal))  # noqa: PT017
+    else:
+        problems = check_program(made.text, machine)
+        assert {problem.subject for problem in problems} <= {"passes"}
+        assert 2 * sum(problem.times for problem in problems) == made.tuck_passes
+
+
+@of_each(PROGRAMMED)
+@pytest.mark.parametrize(
+    "rows",
+    ["OK/;KKK", "KO)K;KKKK", "[1/2RPP]KP;KKKKK"],
+    ids=["over the cast-on", "beside a decrease", "beside a cable"],
+)
+def test_lace_and_cables_of_the_first_row_are_knitted_or_refused(
+    machine: MachineProfile, rows: str
+) -> None:
+    """Loops of a cast-on count, and those that stand aside for others may come back."""
+    stitches_are_knitted_or_refused(machine, SymbolChart.parse(rows), Finish.WASTE)
+
+
+@pytest.mark.slow
+@settings(max_examples=12)
+@given(
+    chart=symbol_charts(most_rows=2, most_columns=6, turned=False), finish=st.sampled_from(Finish)
+)
+@of_each(PROGRAMMED)
+def test_any_stitches_are_knitted_or_refused_with_what_helps(
+    machine: MachineProfile, chart: SymbolChart, finish: Finish
+) -> None:
+    stitches_are_knitted_or_refused(machine, chart, finish)

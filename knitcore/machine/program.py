@@ -84,7 +84,7 @@ class KnitoutProgram:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the machine does otherwise than a reader of the chart expects, in sentences."""
+        """Sentences on what the machine does otherwise than a reader of the chart expects."""
         tucks = f"Tucks beside knits take {self.tuck_passes} passes more: a bed does one of both."
         return (*([self.spared] if self.spared else []), *([tucks] if self.tuck_passes else []))
 
@@ -162,7 +162,7 @@ def knitout_program(
 def _steps(
     piece: Piece, plan: CarrierPlan, machine: MachineProfile, finish: Finish, lines: Sequence[str]
 ) -> Iterator[str]:
-    """What the user does at the machine before and after, a sentence each."""
+    """Say what the user does at the machine before and after, a sentence each."""
     used = {line.rsplit(" ", 1)[-1] for line in lines if line.startswith(("knit", "tuck"))}
     yarns = {k: f"{piece.yarns[y].name} ({piece.yarns[y].colour})" for k, y in plan.yarns.items()}
     has_draw = not machine.carriers.hooks and plan.draw not in (None, plan.waste)

@@ -106,7 +106,10 @@ class _Check:
         self._span: tuple[float, float] | None = None
         self._span_line = 1
         self._keeps = False
-        self._came_from: dict[str, str] = {}
+        self._came_from: dict[str, tuple[str, int]] = {}
+        """Where a transferred loop was, and after which changes of racking it left."""
+        self._moved_at = 0.0
+        self._moves = 0
         self._loops: Counter[str] = Counter()
         self._hooked = ""
         self._set: set[str] = set()
@@ -424,8 +427,11 @@ class _Check:
                 "loops are transferred while needles do not face each other.",
                 "Rack by whole needles before transfers.",
             )
-        origin = self._came_from.pop(here, here)
-        if origin == there and self._loops[there] == moved:
+        self._moves += self._rack != self._moved_at
+        self._moved_at = self._rack
+        origin = self._came_from.pop(here, (here, self._moves))
+        # Between transfers at another racking, a loop may well have stood aside for them.
+        if origin == (there, self._moves) and self._loops[there] == moved:
             self.add(
                 "transfers",
                 "a loop is moved away and back before it is knitted.",
@@ -433,4 +439,4 @@ class _Check:
                 stops=False,
             )
         else:
-            self._came_from[there] = "" if there in self._came_from else origin
+            self._came_from[there] = ("", 0) if there in self._came_from else origin

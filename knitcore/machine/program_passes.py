@@ -95,7 +95,7 @@ class ProgramPass:
     carriers : that it moves.
     loops : made, moved or dropped.
     low, high : the needles it works on, from left to right.
-    changes : how often one bed goes over from tucks to knits, or back.
+    changes : how often it goes over from tucks to knits on a bed, or back.
     number : stitch number of the loops that it moves, of a transfer; None if none is set.
     pulls : on the loops that needles hold.
     """
@@ -248,7 +248,11 @@ class _Reader:
             (last.kind, last.carriers, last.rack) == (kind, tuple(carriers), self._rack)
             and (kind == "drop" or last.rightwards == rightwards)
         )
-        onward = last is not None and (at >= last.high if rightwards else at <= last.low)
+        onward = last is not None and (
+            operation == "miss"
+            or not last.loops
+            or (at > last.high if rightwards else at < last.low)
+        )
         if last is None or not (same and (onward or kind == "drop")):
             last = ProgramPass(kind, self._line, self._rack, rightwards)
             last.carriers = tuple(carriers)
@@ -261,7 +265,9 @@ class _Reader:
             for loop in self._held.pop(here, []):
                 self._place[loop] = None
         if carriers:
-            last.changes += self._kinds.get(here.bed, operation) != operation
+            if self._kinds.get(here.bed, operation) != operation:
+                last.changes += 1
+                self._kinds = {}  # the carriage comes anew, over both beds
             self._kinds[here.bed] = operation
             self._knitted = self._number
             self._make(here, tuple(carriers))

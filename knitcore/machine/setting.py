@@ -79,7 +79,7 @@ swatches, or change it.
         note = f"Stitch number {number:g}: a start, so knit two swatches, or change it."
         if dial is not None and loops_mm is not None:
             setting = dial.nearest(loops_mm)
-            number, note = setting.number, _words(setting, loops_mm)
+            number, note = setting.number, _words(setting, loops_mm, machine)
     if dial is not None and number in dial and (loops_mm is not None or stitch_number is not None):
         loops_mm = dial.loop_length_mm(number)[0]
     yarn = _yarn(material, loops_mm, linear_density_tex)
@@ -99,15 +99,18 @@ def _looser(dial: Dial | None, number: float, yarn: LoopYarn | None) -> dict[flo
     return dict(takewhile(lambda of: of[1].loop_length_mm <= most, loops))
 
 
-def _words(setting: DialSetting, loops_mm: float) -> str:
+def _words(setting: DialSetting, loops_mm: float, machine: MachineProfile) -> str:
     low, high = setting.loop_length_interval_mm
     guess = "a guess from the gauge, so knit two swatches, or change it."
     basis = guess if setting.guessed else "by your swatches."
+    thirds = round(3 * setting.number)
+    is_between = not machine.reads_programs and setting.number % 1
+    on_dial = f" (dial at {thirds // 3}{'•' * (thirds % 3)})" if is_between else ""
     far = ""
     if abs(setting.number - setting.exact) > 1:
         far = f" It comes nearest to the {loops_mm:.1f} mm that the yarn has in other cloth."
     return (
-        f"Stitch number {setting.number:g} for loops of {setting.loop_length_mm:.1f} mm "
+        f"Stitch number {setting.number:g}{on_dial} for loops of {setting.loop_length_mm:.1f} mm "
         f"({low:.1f} to {high:.1f}): {basis}{far}"
     )
 

@@ -27,7 +27,6 @@ from knitcore.machine.feed import is_leftwards
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile
 from knitcore.machine.program import Finish, KnitoutProgram, is_mirrored, knitout_program
 from knitcore.machine.program_body import MAX_LOOPS, ProgramBody
-from knitcore.machine.program_check import MOST_LOOPS
 from knitcore.machine.tension import LoopYarn
 from knitcore.machine.transfers import LoopMove, Needle, TransferPass, TransferPlan, plan_transfers
 
@@ -35,6 +34,10 @@ MOST_SHIFT = 8
 """Most columns by which a bed is racked, however far the machine can."""
 MOST_SPARE = 3
 """Needles that the yarn at most lets two neighbours be apart."""
+
+
+_Move = tuple[int, str, str]
+"""A racking in columns, and the needles from which and to which loops go."""
 
 
 def bed_map(graph: StitchGraph, *, tuck_with_knit: bool = True) -> Mask:
@@ -189,12 +192,25 @@ class _StitchBody(ProgramBody):
 
     def _place(self, row: int) -> Iterator[str]:
         """Bring the loops below to the needles that work them."""
+        full = {self._needle(back, column) for column, back in self._back.items()}
+        rack, per_column = 0, self._machine.needles_per_column
+        for at, here, there in _without_returns(list(self._moves_of(row)), full):
+            if at != rack:
+                rack = at
+                yield f"rack {rack * per_column}"
+            yield f"xfer {here} {there}"
+        if rack:
+            yield "rack 0"
+
+    def _moves_of(self, row: int) -> Iterator[_Move]:
         groups = list(_groups(self._graph, row))
         beds = self._piece.chart.purl[row]
         for back in (True, False):
             for group in groups:
                 if len(group) == 1 and beds[group.start] == back:
-                    yield from self._to_bed(group.start, back=back)
+                    for line in self._to_bed(group.start, back=back):
+                        _, here, there = line.split()
+                        yield 0, here, there
         waiting = [group for group in groups if len(group) > 1]
         while waiting:
             passes = self._passes(row, waiting[0])
@@ -254,21 +270,15 @@ class _StitchBody(ProgramBody):
 
     def _moved(
         self, row: int, passes: Sequence[TransferPass], groups: Sequence[range]
-    ) -> Iterator[str]:
+    ) -> Iterator[_Move]:
         """Carry out the passes of like groups together."""
-        rack, per_column = 0, self._machine.needles_per_column
         for step in passes:
-            if step.rack != rack:
-                rack = step.rack
-                yield f"rack {rack * per_column}"
             for group in groups:
                 for pair in step.transfers:
-                    names = [
+                    here, there = (
                         self._needle(place.bed == "b", place.number + group.start) for place in pair
-                    ]
-                    yield f"xfer {' '.join(names)}"
-        if rack:
-            yield "rack 0"
+                    )
+                    yield step.rack, here, there
         for group in groups:
             self._check_hooks(row, group)
             held = {column: self._held.pop(column) for column in group}
@@ -284,13 +294,38 @@ class _StitchBody(ProgramBody):
         """Refuse stitches through more loops than a hook holds."""
         for column in group:
             loops = sum(self._held[int(source)] for source in self._graph.sources(row, column))
-            if loops > MOST_LOOPS:
+            if loops > MAX_LOOPS:
                 raise InputError(
                     "chart",
                     f"row {row + 1}, stitch {column + 1} is worked through {loops} loops; a hook "
-                    f"holds {MOST_LOOPS}.",
+                    f"holds {MAX_LOOPS}.",
                     "Begin with a row of knits." if row == 0 else "Decrease after a plain row.",
                 )
+
+
+def _without_returns(moves: Sequence[_Move], full: set[str]) -> list[_Move]:
+    """Leave out moves that others take back before any at another racking.
+
+    ``full`` are the needles that hold loops before: what is laid onto them does not come back.
+    """
+    kept: list[tuple[_Move, bool]] = []
+    for rack, here, there in moves:
+        ends = {here, there}
+        met = next(
+            (
+                k
+                for k in reversed(range(len(kept)))
+                if kept[k][0][0] != rack or ends & {*kept[k][0]}
+            ),
+            None,
+        )
+        if met is not None and kept[met] == ((rack, there, here), False):
+            del kept[met]
+        else:
+            kept.append(((rack, here, there), there in full))
+        full.discard(here)
+        full.add(there)
+    return [move for move, _ in kept]
 
 
 def _numbers(passes: Sequence[TransferPass]) -> list[int]:

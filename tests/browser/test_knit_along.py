@@ -1,6 +1,7 @@
 """Knitting along, row by row, on a phone."""
 
-from playwright.sync_api import Page, expect
+import pytest
+from playwright.sync_api import Browser, Page, expect
 
 from tests.browser import axe
 from tests.browser.conftest import flat, open_small_chart, wait_for_numbers
@@ -72,3 +73,33 @@ def turned_by_a_finger(page: Page) -> None:
     for way, row in (((300, 100), 1), ((300, 100), 2), ((300, 280), 2), ((100, 300), 1)):
         page.evaluate(swipe, list(way))
         expect(page.locator(".along-row")).to_have_text(f"Row {row} of 10")
+
+
+@pytest.mark.slow
+def test_another_device_goes_on_at_the_row(visitor: Page, service: str, browser: Browser) -> None:
+    page = open_small_chart(flat(visitor), service, CHART)
+    make = """async (chart) => {
+        const body = JSON.stringify({ name: "Cuff", material: "acrylic", chart });
+        const headers = { "Content-Type": "application/json" };
+        const answer = await fetch("/api/v1/designs", { method: "POST", headers, body });
+        return (await answer.json()).id;
+    }"""
+    address = f"{service}#design/{page.evaluate(make, CHART)}"
+    page.goto(address)
+    expect(page.locator(".design-name")).to_have_value("Cuff")
+    heading = opened(page).locator(".along-row")
+    for _ in range(2):
+        with page.expect_response("**/places/flat"):
+            page.locator("#along-next").click()
+    context = browser.new_context(viewport=PHONE)
+    phone = flat(context.new_page())
+    phone.goto(address)
+    expect(phone.locator(".design-name")).to_have_value("Cuff")
+    there = opened(phone).locator(".along-row")
+    expect(there).to_have_text("Row 2 of 10")
+    expect(phone.locator(".along-main")).to_contain_text("kept with the design")
+    with phone.expect_response("**/places/flat"):
+        phone.locator("#along-next").click()
+    page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")  # looked at again
+    expect(heading).to_have_text("Row 3 of 10")
+    context.close()

@@ -44,6 +44,11 @@ EDGE_S = 8.0
 MAX_LADDER = 30
 """Most rows that are dropped at once: longer ladders draw in (a stated guess)."""
 
+INTARSIA = (
+    "Intarsia rows: use the intarsia carriage, or lay each yarn over its needles by hand. Each "
+    "block has a ball of its own; cross the yarns where blocks meet."
+)
+
 
 def hand_plan(chart: StitchChart | Piece, profile: MachineProfile) -> HandPlan:
     """Plan a piece for a home machine, flat.
@@ -59,7 +64,7 @@ def hand_plan(chart: StitchChart | Piece, profile: MachineProfile) -> HandPlan:
     >>> rib = StitchChart.of_fabric("rib", rows=10, columns=4)
     >>> print("\\n".join(hand_plan(rib, profile("brother")).blocks[0].lines))
     Knit 10 rows.
-    Drop the stitches of L2 and R1 by 10 rows and latch up as knits.
+    Drop the stitches of L2 and R1 down 10 rows and latch up as knits.
     """
     piece = Piece.of(chart).cropped()
     check_home(piece, profile)
@@ -262,7 +267,7 @@ class _Planner:
             rows = last - first + 1
             depth = "1 row" if rows == 1 else f"{rows} rows"
             what = "the stitch" if len(places) == 1 else "the stitches"
-            words = f"Drop {what} of {self._words(places)} by {depth} and latch up as knits."
+            words = f"Drop {what} of {self._words(places)} down {depth} and latch up as knits."
             seconds = (LADDER_S + RUNG_S * rows) * len(places)
             task = Task(Act.REFORM, self._names(places), words, seconds, (first + 1, last + 1))
             tasks[last].append(task)
@@ -279,6 +284,11 @@ class _Planner:
         return place in self._places(row, lost)  # a loop is put onto its needle
 
     def _opening(self, row: HandRow) -> tuple[str, ...]:
+        rows = range(len(self._spans))
+        has_intarsia = any(len(self._yarn_places(number)) > 1 for number in rows)
+        return (*self._cast_on(row), *([INTARSIA] if has_intarsia else []))
+
+    def _cast_on(self, row: HandRow) -> tuple[str, ...]:
         last = row.first + len(row.other)
         places = range(row.first, last)
         start = "right" if row.leftwards else "left"

@@ -1,7 +1,7 @@
 """Needles of a home machine: their names, and where the stitches of a chart lie on them.
 
 Places on the bed are counted from the knitter's left. The chart shows the right side: where that
-side looks away from the knitter, the places are the chart's columns from the right.
+side faces away from the knitter, the places are the chart's columns from the right.
 """
 
 from __future__ import annotations
@@ -68,9 +68,9 @@ def on_needles(cells: NDArray[Any], toward: Mask) -> NDArray[Any]:
 def side_words(toward: Mask) -> str:
     """Say which side of the fabric the knitter sees, and what this means for the needles."""
     if toward.all():
-        return "The right side looks at you: the needles are in the order of the chart."
+        return "The right side faces you: the needles are in the order of the chart."
     if not toward.any():
-        return "The right side looks away from you: the needles mirror the chart."
+        return "The right side faces away from you: the needles mirror the chart."
     return "The work is turned: the needles follow or mirror the chart, as written here."
 
 

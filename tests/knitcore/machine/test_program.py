@@ -363,7 +363,7 @@ def test_32_x_32_is_exported_and_verified() -> None:
 def test_a_chart_that_is_not_knitted_is_never_exported(monkeypatch: pytest.MonkeyPatch) -> None:
     other = knitout_program(StitchChart.parse("KP\nPP"))
     monkeypatch.setattr(
-        "knitcore.formats.read.knitout_reader.knitout_program", lambda *_, **__: other
+        "knitcore.formats.read.knitout_reader.stitch_program", lambda *_, **__: other
     )
     with pytest.raises(KnitoutMismatchError, match="another chart"):
         verified(StitchChart.parse("KP\nPK"))

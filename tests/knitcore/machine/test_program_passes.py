@@ -22,6 +22,17 @@ def test_a_pass_ends_where_the_carriage_turns() -> None:
     assert (steps[0].low, steps[0].high, steps[1].line) == (1, 4, 6)
 
 
+def test_a_needle_knits_once_in_a_pass() -> None:
+    steps = read_passes("tuck - f1 1\nknit - f1 1\nmiss - f1 1\nmiss - f0 1").passes
+    assert [(step.loops, step.changes) for step in steps] == [(1, 0), (1, 0)]
+
+
+def test_both_beds_go_over_from_tucks_to_knits_at_once() -> None:
+    lines = ["knit + f1 1", "knit + b2 1", "tuck + f3 1", "tuck + b4 1", "knit + f5 1"]
+    (step,) = read_passes("\n".join(lines)).passes
+    assert step.changes == 2
+
+
 def test_a_pass_of_transfers_has_one_racking_and_one_bed() -> None:
     lines = [*row("+", range(1, 5)), "xfer f1 b1", "xfer f2 b2", "xfer b1 f1", "rack 1"]
     lines += ["xfer b2 f3", "rack 0"]

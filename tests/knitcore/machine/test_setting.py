@@ -1,5 +1,6 @@
 """Machines set for the loops of a piece."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -59,3 +60,10 @@ def test_swatches_that_cannot_be_right_are_refused() -> None:
     wrong = replace(KNITERATE, swatches=(DialSwatch(5, 900, "glove-wool"),))
     with pytest.raises(InputError, match="do not fit"):
         setting_of(RIB, wrong, WOOL)
+
+
+def test_dials_of_home_machines_have_thirds() -> None:
+    note = setting_of(RIB, profile("brother"), WOOL).note
+    match = re.match(r"Stitch number (\S+) \(dial at (\d+)(•*)\)", note)
+    assert match is not None
+    assert abs(float(match[1]) - int(match[2]) - len(match[3]) / 3) < 1 / 6 + 1e-9

@@ -18,7 +18,9 @@ def test_a_report_gives_passes_yarn_and_the_tightest_loop(client: TestClient) ->
     assert report["transfers"] == 44
     assert report["passes"] == sum(report[f"{k}_passes"] for k in ("knit", "transfer", "empty"))
     assert report["cost"] > 0
-    (kind,) = report["kinds_of_transfer"]
+    kind, of_waste = report["kinds_of_transfer"]  # waste yarn is knitted looser here
+    assert (kind["passes"], of_waste["passes"]) == (10, 1)
+    assert kind["tightest"]["own_mm"] < of_waste["tightest"]["own_mm"]
     assert kind["tightest"]["verdict"] == "free"
     low, high = kind["tightest"]["tension_interval_n"]
     assert low < kind["tightest"]["tension_n"] < high

@@ -134,7 +134,7 @@ def test_programs_of_other_hands(moves: str, row: str, face: str) -> None:
     [
         ("BK", "swg091n2", "row 1, stitch 1 is twisted, which no machine does"),
         ("[3/3R];KKKKKK", "kniterate", "row 2, stitches 1 to 6: Kniterate"),
-        ("KKK;^OO", "kniterate", "row 1, stitch 1 is worked through 6 loops; a hook holds 4"),
+        ("KKK;^OO", "kniterate", "row 1, stitch 1 is worked through 6 loops; a hook holds 3"),
         ("TK;TK;TK;KK", "swg091n2", "row 4, stitch 1 holds 4 loops; a hook holds 3"),
     ],
 )

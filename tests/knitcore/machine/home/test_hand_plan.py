@@ -104,7 +104,7 @@ def test_a_rib_is_dropped_in_whole_columns_and_latched_up_once() -> None:
     (task,) = tasks(plan, Act.REFORM)
     assert task.rows == (1, 20)
     assert len(plan.blocks) == 1
-    assert task.words == "Drop the stitches of L3, L1 and R2 by 20 rows and latch up as knits."
+    assert task.words == "Drop the stitches of L3, L1 and R2 down 20 rows and latch up as knits."
 
 
 def test_long_ladders_are_latched_up_on_the_way() -> None:
@@ -146,6 +146,8 @@ def test_yarns_are_laid_over_their_needles_as_the_knitter_sees_them() -> None:
         "Yarn B (silk) on L2–R2.",
     ]
     assert [bool(row.before) for row in plan.rows] == [True, False, True]
+    assert "Each block has a ball of its own" in plan.opening[-1]
+    assert not any("Intarsia" in line for line in hand_plan(chart, profile("brother")).opening)
 
 
 def test_equal_groups_of_rows_are_written_once() -> None:
