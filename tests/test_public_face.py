@@ -133,15 +133,16 @@ def _documentation() -> Iterator[str]:
 
 
 def _imported(programs: Iterable[str]) -> set[Any]:
-    """Names that programs import from the library, as objects."""
+    """Functions that programs import from the library."""
     nodes = itertools.chain.from_iterable(ast.walk(ast.parse(program)) for program in programs)
-    return {
+    objects = (
         getattr(importlib.import_module(node.module), name.name)
         for node in nodes
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("knitcore")
         for name in node.names
         if node.module
-    }
+    )
+    return set(filter(inspect.isfunction, objects))
 
 
 def _results(functions: Iterable[Any]) -> set[Any]:

@@ -54,7 +54,7 @@ class Narrowing:
     n_per_mm : force per width, N/mm, under which a strain is meant; None for other numbers.
     shares : of the variance of the logarithm by part, the largest first; they add up to 1. Of a
         Poisson's ratio they are those of its own variance.
-    interval : 90 % interval, in the unit of the number.
+    now : 90 % interval, in the unit of the number.
     act : what would remove the largest part that can be removed; None if nothing helps.
     how : the same in words; empty if nothing helps.
     left : the 90 % interval after it; None if nothing helps.
@@ -64,7 +64,7 @@ class Narrowing:
     quantity: str
     n_per_mm: float | None
     shares: Mapping[Part, float]
-    interval: Interval
+    now: Interval
     act: Remedy | None
     how: str
     left: Interval | None

@@ -68,7 +68,7 @@ class NarrowingResult(ResultModel):
         description="Shares of the parts in the variance of the logarithm (of a Poisson's ratio, "
         "of its own variance), the largest first."
     )
-    interval: Ends = Field(description="In the unit of the quantity.")
+    now: Ends = Field(description="90 % interval, in the unit of the quantity.")
     act: Remedy | None = Field(
         description="What would remove the largest part that can be: a gauge counted "
         "(`gauge`), a swatch weighed (`yarn_per_stitch_mm` of a garment), or a strip pulled "

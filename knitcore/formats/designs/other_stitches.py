@@ -132,7 +132,7 @@ def placed(
 
 
 def painted_over(runs: Sequence[StitchRun], painted: set[tuple[int, int]]) -> list[StitchRun]:
-    """What is left where knits and purls are painted; a wide stitch that is hit goes whole.
+    """Take away what knits and purls are painted over; a wide stitch that is hit goes whole.
 
     Parameters
     ----------

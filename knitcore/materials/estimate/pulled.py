@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -32,7 +33,9 @@ from knitcore.materials.estimate.yarn_statistics import DIRECTIONS, FABRICS, LOA
 from knitcore.materials.law_uncertainty import CurveUncertainty, LawUncertainty
 from knitcore.materials.material import Material, Origin
 from knitcore.measure.stretch_points import StretchPoint
-from knitcore.measure.stretch_test import StretchTest
+
+if TYPE_CHECKING:
+    from knitcore.measure.stretch_test import StretchTest
 
 _Known = tuple[Fabric, ConstitutiveLaw, LawUncertainty, Origin]
 _STEP = 0.05

@@ -51,12 +51,12 @@ class DrawnYarn:
 
 
 def drawn_yarn(graph: StitchGraph, wale_mm: float, row_mm: float, layer_mm: float) -> DrawnYarn:
-    """Draw the yarn of a repeat with the crossings of its graph (see :class:`Drawing`)."""
-    return Drawing(graph)(wale_mm, row_mm, layer_mm)
+    """Draw the yarn of a repeat with the crossings of its graph (see :class:`DrawableYarn`)."""
+    return DrawableYarn(graph)(wale_mm, row_mm, layer_mm)
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
+class DrawableYarn:
     """The yarn of a repeat, to be drawn at any size."""
 
     graph: StitchGraph

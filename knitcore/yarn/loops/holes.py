@@ -17,7 +17,7 @@ _STEEPEST = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Holes:
-    """What the yarn of a repeat leaves open.
+    """Holes that the yarn of a repeat leaves.
 
     Attributes
     ----------
@@ -62,14 +62,14 @@ def holes(lines: Array, width_mm: float, height_mm: float, radius_mm: float) -> 
 
 
 def _joined(is_open: Array) -> Array:
-    """Which hole every open pixel belongs to; the repeat goes on over its edges."""
+    """Number the hole that every open pixel belongs to; the repeat goes on over its edges."""
     label, count = scipy.ndimage.label(is_open)
     pairs = [
         np.stack([first, last], axis=-1)[(first > 0) & (last > 0)]
         for first, last in ((label[0], label[-1]), (label[:, 0], label[:, -1]))
     ]
-    one, other = np.concatenate(pairs).T - 1
-    touching = scipy.sparse.coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
+    first, last = np.concatenate(pairs).T - 1
+    touching = scipy.sparse.coo_array((np.ones(len(first)), (first, last)), shape=(count, count))
     _, hole = scipy.sparse.csgraph.connected_components(touching, directed=False)
     return np.asarray(hole[label[is_open] - 1])
 

@@ -15,7 +15,7 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.errors import Cancelled, ConvergenceError, UnravelledError
 from knitcore.chart.stitch_graph import StitchGraph
-from knitcore.yarn.loops.drawn_yarn import Drawing, DrawnYarn
+from knitcore.yarn.loops.drawn_yarn import DrawableYarn, DrawnYarn
 from knitcore.yarn.loops.stitch_energy import StitchEnergy
 from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.conventions import Convention
@@ -59,7 +59,7 @@ def room_for_yarn(graph: StitchGraph, yarn: YarnModel, loop_length_mm: float) ->
     ConvergenceError
         If it cannot be drawn.
     """
-    drawing = Drawing(graph)
+    drawing = DrawableYarn(graph)
     for scale in _SCALES:
         size = scale * loop_length_mm
         drawn = drawing(size, size, _LAYER_RADII * yarn.radius_mm)

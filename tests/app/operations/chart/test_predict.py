@@ -150,7 +150,7 @@ def test_what_would_narrow_an_interval_does_so_over_rest(client: TestClient) -> 
     stretch = narrowing["strain_course", 0.1]
     assert stretch["act"] == "count"
     assert next(iter(stretch["shares"])) == "size at rest"
-    assert stretch["interval"] == first["hand"][1]["course"]["strain_interval"]
+    assert stretch["now"] == first["hand"][1]["course"]["strain_interval"]
     gauge = {
         "stitches_per_10_cm": 100 / first["relaxed_course_mm"],
         "rows_per_10_cm": 100 / first["relaxed_wale_mm"],
