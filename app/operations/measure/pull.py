@@ -6,7 +6,8 @@ from pydantic import Field
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.materials import Material
-from knitcore.materials.estimate.pulled import points_of_test, pulled
+from knitcore.materials.estimate.pull_points import points_of_test
+from knitcore.materials.estimate.pulled import pulled
 from knitcore.materials.estimate.yarn_statistics import LOAD_N_PER_MM
 from knitcore.materials.material_document import MaterialDocument
 from knitcore.materials.material_files import save_material_file

@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,20 +21,11 @@ from knitcore.chart.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials.estimate.mixed_model import LogStrain, MixedModel
-from knitcore.materials.estimate.without_tester import (
-    LAW_SCATTER,
-    LAW_STRESSES_N_PER_MM,
-    library_values,
-    log_strain,
-    points_of_law,
-)
+from knitcore.materials.estimate.without_tester import library_values, log_strain, points_of_law
 from knitcore.materials.estimate.yarn_statistics import DIRECTIONS, FABRICS, LOAD_N_PER_MM
 from knitcore.materials.law_uncertainty import CurveUncertainty, LawUncertainty
 from knitcore.materials.material import Material, Origin
 from knitcore.measure.stretch_points import StretchPoint
-
-if TYPE_CHECKING:
-    from knitcore.measure.stretch_test import StretchTest
 
 _Known = tuple[Fabric, ConstitutiveLaw, LawUncertainty, Origin]
 _STEP = 0.05
@@ -75,35 +65,6 @@ def pulled(material: Material, points: Sequence[StretchPoint]) -> Material:
         for fabric, record in material.fabrics.items()
     }
     return replace(material, fabrics=records)
-
-
-def points_of_test(
-    test: StretchTest, fabric: Fabric, direction: Direction
-) -> tuple[StretchPoint, ...]:
-    """Points of a stretch test as far as it goes: means of its pulls, clamp to clamp.
-
-    Raises
-    ------
-    InputError
-        If no pull reaches the smallest stress that is read.
-    """
-    points = []
-    for stress in LAW_STRESSES_N_PER_MM:
-        runs = [run for run in test.runs if run.stress.max() >= stress]
-        if not runs:
-            break
-        strains = [
-            float(np.interp(stress, np.maximum.accumulate(run.stress), run.strain_along))
-            for run in runs
-        ]
-        along = float(np.mean(strains))
-        spread = LAW_SCATTER * along
-        points.append(StretchPoint(fabric, direction, stress, along, spread, 0.0, spread))
-    if not points:
-        least = LAW_STRESSES_N_PER_MM[0]
-        problem = f"no pull reaches {least:g} N/mm."
-        raise InputError(test.source, problem, "Pull farther, or take a narrower strip.")
-    return tuple(points)
 
 
 def if_pulled(material: Material, fabric: Fabric, direction: Direction) -> Material:
