@@ -125,7 +125,7 @@ def friction_slopes(
 
 
 @compiled
-def friction_hessian(  # noqa: PLR0915 - compiled: one pair at a time
+def friction_hessian(  # noqa: PLR0912, PLR0915 - compiled: one pair at a time
     curve: Array, course_mm: float, wale_mm: float, sliding: Sliding, layout: Layout,
     speeds: Array, tiles: Array, where: Pairs, sizes: Array,
 ) -> None:  # fmt: skip
@@ -139,6 +139,7 @@ def friction_hessian(  # noqa: PLR0915 - compiled: one pair at a time
     c, _ = slides(curve, course_mm, wale_mm, sliding.pairs, layout, speeds)
     # every unknown moves one component of d, of d1 at i and of d1 at the image of j
     unknown, component = np.empty(38, np.int64), np.empty(38, np.int64)
+    tile, within = np.empty(38, np.int64), np.empty(38, np.int64)
     by = np.zeros((38, 3))
     slope = np.empty((38, 2))
     unknown[36], unknown[37] = layout.unknowns - 2, layout.unknowns - 1
@@ -181,16 +182,20 @@ def friction_hessian(  # noqa: PLR0915 - compiled: one pair at a time
         # a pair that slips has no stiffness along its slide
         h0, h1 = (e0 / size, e1 / size) if size > sliding.slip[q] else (0.0, 0.0)
         for u in range(38):
+            tile[u], within[u] = unknown[u] // tile_size, unknown[u] % tile_size
+        for u in range(38):
             s0 = stiff * ((1.0 - h0 * h0) * slope[u, 0] - h0 * h1 * slope[u, 1])
             s1 = stiff * ((1.0 - h1 * h1) * slope[u, 1] - h0 * h1 * slope[u, 0])
             first = p0 * by[u, 1] + p1 * by[u, 2]
+            row = unknown[u]
             for v in range(38):
+                column = unknown[v]
+                if row < local and (column >= local or tile[u] < tile[v]):
+                    continue
                 value = s0 * slope[v, 0] + s1 * slope[v, 1]
                 if component[u] == component[v]:
                     value += first * by[v, 0] + by[u, 0] * (p0 * by[v, 1] + p1 * by[v, 2])
-                row, column = unknown[u], unknown[v]
-                block, other = row // tile_size, column // tile_size
                 if row >= local:
                     sizes[row - local, column] += value
-                elif column < local and block >= other and where[block, other] >= 0:
-                    tiles[where[block, other], row % tile_size, column % tile_size] += value
+                elif where[tile[u], tile[v]] >= 0:
+                    tiles[where[tile[u], tile[v]], within[u], within[v]] += value

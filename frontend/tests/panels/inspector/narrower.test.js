@@ -8,7 +8,7 @@ const STRETCH = {
   quantity: "strain_course",
   n_per_mm: 0.1,
   shares: { "size at rest": 0.93, "surroundings of a stitch": 0.06, "stretch of other yarns": 0.01 },
-  interval: [1.3, 2.1],
+  now: [1.3, 2.1],
   act: "count",
   how: "count the gauge of your swatch",
   left: [1.49, 1.81],
