@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import TypeVar
 
 from pydantic import BaseModel
-from sqlalchemy import Connection, insert, select
+from sqlalchemy import Connection, Delete, insert, select
 from sqlalchemy.exc import IntegrityError
 
 from ..problems import ServiceError
@@ -18,6 +18,8 @@ from ..store.tables import idempotency_keys
 
 Reply = TypeVar("Reply", bound=BaseModel)
 KEPT_S = 86_400.0
+MAX_KEYS = 100
+"""Keys of one user that are known, the latest; each holds an answer, such as a large design."""
 
 
 class StaleError(ServiceError):
@@ -138,12 +140,26 @@ def once(
         answer = action(connection)
         values = {"answer": answer.model_dump_json(), "created_at": database.clock}
         connection.execute(insert(idempotency_keys).values(asdict(retry) | values))
+        connection.execute(_all_but_latest(retry))
         return answer
 
     try:
         return database.write(guarded)
     except IntegrityError:
         return database.write(guarded)  # its twin was faster: now its answer is there
+
+
+def _all_but_latest(retry: Retry) -> Delete:
+    """Delete what a user's keys hold beyond the latest ones."""
+    keys = idempotency_keys.c
+    latest = (
+        select(keys.key)
+        .where(keys.owner == retry.owner, keys.key != retry.key)
+        .order_by(keys.created_at.desc())
+        .limit(MAX_KEYS - 1)
+    )
+    mine = (keys.owner == retry.owner) & (keys.key != retry.key)
+    return idempotency_keys.delete().where(mine, keys.key.not_in(latest))
 
 
 def forget_old_keys(database: Database) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app.service.designs import conditions
 from tests.app.command_line import run
 
 RIB = {"name": "Cuff", "material": "acrylic", "chart": "KPKP\nKPKP"}
@@ -84,6 +85,17 @@ def test_a_retry_with_a_key_makes_one_design(client: TestClient) -> None:
     assert (again.status_code, again.headers["location"]) == (201, first.headers["location"])
     other = client.post(DESIGNS, json=RIB | {"name": "Other"}, headers=key)
     assert (other.status_code, other.json()["field"]) == (422, "Idempotency-Key")
+
+
+def test_the_latest_keys_of_a_user_are_known(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(conditions, "MAX_KEYS", 3)
+    keys = [{"Idempotency-Key": f"key-number-{n}"} for n in range(5)]
+    made = [client.post(DESIGNS, json=RIB, headers=key).json()["id"] for key in keys]
+    known = [client.post(DESIGNS, json=RIB, headers=key).json()["id"] for key in keys[:1:-1]]
+    assert known == made[:1:-1]
+    assert client.post(DESIGNS, json=RIB, headers=keys[0]).json()["id"] not in made
 
 
 def test_delete_list_and_recover(client: TestClient, made: str) -> None:
