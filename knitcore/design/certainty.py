@@ -5,7 +5,8 @@ the gauge as it is expected, the yarn in a stitch as it is expected, or a strip 
 is expected to.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from operator import attrgetter
@@ -21,18 +22,22 @@ from knitcore.materials import Interval, Material
 from knitcore.materials.estimate.pulled import if_pulled
 from knitcore.materials.interval_parts import Part, Variances, deviation
 from knitcore.materials.yarn_per_stitch import MeasuredYarn, has_loop_length, mean_yarn
+from knitcore.measure.stretch_points import StretchPoint
 from knitcore.prediction.densities import densities
 from knitcore.prediction.hand import PULLS_N_PER_MM
 from knitcore.prediction.mixture import Mixture
 from knitcore.prediction.patches import is_large
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Along, Prediction
+from knitcore.prediction.pure import predict_pure
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 LEAST_SHARE = 0.1
 """Share of the variance below which a part is not worth an act."""
 WORTH = 0.9
 """Width of the interval that an act leaves, over that of now, above which it is not worth it."""
+SURPRISING = 1.57
+"""Half widths of a 90 % interval, in logarithms, beyond which 1 % of all pulls lie."""
 LINES = {Direction.COURSE: "rows", Direction.WALE: "columns"}
 
 
@@ -178,6 +183,33 @@ def _numbers(prediction: Prediction) -> Iterator[_Number]:
         for force in PULLS_N_PER_MM.values():
             parts, interval_of = along.strain_parts(force), partial(_strains, force)
             yield _Number(f"strain_{direction}", direction, parts, interval_of, force)
+
+
+def unexpected(points: Iterable[StretchPoint], material: Material) -> str:
+    """Where a pull lies farthest from what its fabric was expected to do, and what to check.
+
+    Parameters
+    ----------
+    points : of a pull, of fabrics that the material has.
+
+    Returns
+    -------
+    A sentence; empty if no point lies outside of its 99 % interval.
+    """
+    farthest, text = SURPRISING, ""
+    for point in points:
+        along = predict_pure(point.fabric, material).along(point.direction)
+        low, high = _strains(point.force_n_per_mm, along)
+        off = abs(math.log(point.strain_along**2 / (low * high))) / math.log(high / low)
+        if off > farthest:
+            farthest = off
+            text = (
+                f"At {point.force_n_per_mm:g} N/mm the strip stretched {point.strain_along:.0%} "
+                f"along its {LINES[point.direction]}; {low:.0%} to {high:.0%} was expected. Check "
+                "yarn, fabric, direction, width and length; if they are right, pull a second strip "
+                "before you rely on this one."
+            )
+    return text
 
 
 def _strains(n_per_mm: float, along: Along) -> Interval:

@@ -5,6 +5,7 @@ from pathlib import Path
 from pydantic import Field
 
 from knitcore.chart.fabric import Direction, Fabric
+from knitcore.design.certainty import unexpected
 from knitcore.materials import Material
 from knitcore.materials.estimate.pull_points import points_of_test
 from knitcore.materials.estimate.pulled import pulled
@@ -51,6 +52,7 @@ class UpdatedYarnResult(IntervalResult):
     """The yarn after the pull, and what it changed."""
 
     fabrics: list[PulledFabric]
+    warning: str = Field(description="What to check of a pull that was not expected; else empty.")
     material: MaterialDocument = Field(description="A material file of the yarn.")
 
 
@@ -69,11 +71,13 @@ def pull(request: PullRequest, context: Context) -> UpdatedYarnResult:
     reading = TableReading(width_mm=request.width_mm, length_mm=request.length_mm)
     with stored([request.test]) as (path,):
         test = read_stretch_test(path, reading=reading)
-    updated = pulled(before, points_of_test(test, request.fabric, request.direction))
+    points = points_of_test(test, request.fabric, request.direction)
+    updated = pulled(before, points)
     note = f"{before.note} Updated by {request.test.name}.".strip()
     after = Material("own-yarn", f"{before.name}, pulled", before.yarn, updated.fabrics, note)
     return UpdatedYarnResult(
         fabrics=[_changed(fabric, d, before, after) for fabric in after.fabrics for d in Direction],
+        warning=unexpected(points, before),
         material=MaterialDocument.from_material(after),
         interval_source=after.record(request.fabric).uncertainty.source,
     )
@@ -112,7 +116,7 @@ def _lines(r: UpdatedYarnResult) -> list[str]:
             )
         )
         lines.append(f"{of.fabric + ', ' + of.direction:22} {before:28} {after}")
-    return lines
+    return [*lines, *([r.warning] if r.warning else [])]
 
 
 OPERATION = Operation(

@@ -37,7 +37,11 @@ export function narrower(studio) {
       if (!chosen || !strip) return;
       file.value = "";
       const request = { test: await uploaded(chosen), material: studio.materialId.value, ...strip };
-      await attempt(status, async () => adopt(studio, (await api.run("measure/pull", request)).material));
+      await attempt(status, async () => {
+        const { material, warning } = await api.run("measure/pull", request);
+        await adopt(studio, material);
+        status.textContent = warning;
+      });
     },
   });
   /** @param {Narrowing} first of an act */

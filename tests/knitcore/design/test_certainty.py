@@ -8,7 +8,7 @@ import pytest
 from knitcore import RelaxedSize, StitchChart, material, predict
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.symbol_chart import SymbolChart
-from knitcore.design.certainty import Narrowing, Remedy, narrowings
+from knitcore.design.certainty import Narrowing, Remedy, narrowings, unexpected
 from knitcore.materials import Interval, Material
 from knitcore.materials.estimate.pulled import pulled
 from knitcore.materials.estimate.without_tester import (
@@ -19,6 +19,7 @@ from knitcore.materials.estimate.without_tester import (
 from knitcore.materials.interval_parts import Part, deviation
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.materials.yarn_per_stitch import MeasuredYarn, mean_yarn
+from knitcore.measure.stretch_points import StretchPoint
 from knitcore.prediction.prediction import Prediction
 
 STRESSES = [0.03, 0.1, 0.3]
@@ -118,3 +119,20 @@ def test_what_nobody_has_measured_cannot_be_narrowed() -> None:
     lace = of(CHARTS["lace"], material("acrylic"))["strain_course", 0.1]
     assert next(iter(lace.shares)) is Part.OTHER_STITCHES
     assert lace.act is None
+
+
+@pytest.mark.parametrize("part", [0.02, 0.5, 0.98])
+def test_a_pull_inside_its_interval_is_expected(part: float) -> None:
+    low, high = predict("KP", material("cotton")).course.strain_interval(0.1)
+    inside = low * (high / low) ** part
+    point = StretchPoint(Fabric.RIB, Direction.COURSE, 0.1, inside, 0.0, 0.0, 0.0)
+    assert unexpected([point], material("cotton")) == ""
+
+
+@pytest.mark.parametrize("times", [0.25, 4.0])
+def test_a_pull_far_outside_says_what_to_check(times: float) -> None:
+    strain = times * float(predict("KP", material("cotton")).course.strain(0.1))
+    point = StretchPoint(Fabric.RIB, Direction.COURSE, 0.1, strain, 0.0, 0.0, 0.0)
+    text = unexpected([point], material("cotton"))
+    assert f"stretched {strain:.0%} along its rows" in text
+    assert "fabric, direction" in text

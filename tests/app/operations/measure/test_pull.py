@@ -35,6 +35,7 @@ def test_one_pull_narrows_its_own_fabric_of_a_yarn_that_was_measured(
     narrower = widths(result)
     assert narrower.pop(("rib", "course")) < 0.8
     assert list(narrower.values()) == pytest.approx([1.0] * 7)
+    assert "pull a second strip" in result["warning"]  # the test is of another yarn's stockinette
     body = {
         "test": example_file("course.csv"),
         "material": "cotton",
