@@ -27,7 +27,9 @@ from ..limits.fair_queue import FairLock
 from ..problems import TooLargeError
 
 SMALL_BYTES = 64_000
-"""Largest body that is decoded without waiting for a turn."""
+SMALL_SIGNS = 2_000
+"""Largest body that is decoded without waiting for a turn, and the commas and colons in it: to
+decode 14,000 takes 6 ms, and a dozen may come at once."""
 MAX_DECODED_BYTES = 4_000_000
 """Largest body that the service decodes itself; a design of the largest chart is smaller."""
 MAX_VALUES = MAX_FIELD + 10_000
@@ -75,7 +77,7 @@ class BoundedRoute(APIRoute):
             if not self.to_worker and int(length) > MAX_DECODED_BYTES:
                 raise _too_large(MAX_DECODED_BYTES)
             content = await request.body()
-            if len(content) <= SMALL_BYTES:
+            if len(content) <= SMALL_BYTES and _count(content, b",:") <= SMALL_SIGNS:
                 return await handle(_Decoded(request.scope, request.receive, content))
             if self.to_worker:
                 return await handle(_Uncut(request.scope, request.receive, content))

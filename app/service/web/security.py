@@ -50,6 +50,9 @@ LIMITS = "knitcore.limits"
 """Headers of the answer about the user's rate of requests, in the scope."""
 ON_THEIR_WAY = 3
 """Messages of a view that one unread by its browser keeps in memory: itself and two behind it."""
+REFUSED_AFTER_S = 0.5
+"""Wait before a request that comes too often is refused: at once, a client that repeats it without
+a pause would keep the service busy with refusals."""
 LOGIN_FAILURES = 20
 """Unknown tokens that one address may try before it must wait 10 s for each. A right token is
 always accepted: 256 random bits cannot be guessed, and a stranger cannot lock others out."""
@@ -154,12 +157,16 @@ class AccessControl:
         passes: ViewPasses = scope["app"].state.passes
         opener = passes.holder(scope)
         self._check(scope, has_pass=opener is not None)
-        if opener is not None:
-            await self._by_pass(scope, opener)
-        elif self.settings.asks_for_login and _is_sign_in(scope):
-            return await self._signed_in(scope, receive)
-        elif self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
-            return await self._login(scope)
+        try:
+            if opener is not None:
+                await self._by_pass(scope, opener)
+            elif self.settings.asks_for_login and _is_sign_in(scope):
+                return await self._signed_in(scope, receive)
+            elif self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
+                return await self._login(scope)
+        except TooManyError:
+            await asyncio.sleep(REFUSED_AFTER_S)
+            raise
         return None
 
     async def _pass_socket(
