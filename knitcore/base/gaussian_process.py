@@ -50,6 +50,8 @@ class Samples:
         return Samples(self.features[rows], self.numbers[rows], self.pure[rows])
 
 
+_AT_ONCE = 32
+"""Charts whose variance is computed at once: SciPy lets no other thread go on meanwhile."""
 _PURE_NOISE = 1e-3
 """Noise of a pure fabric, as a fraction of the noise of others."""
 
@@ -105,9 +107,12 @@ class KernelModel:
         from scipy.linalg import solve_triangular
 
         cross = covariance(self.settings, charts, self.samples)
-        reduced = solve_triangular(self.factor, cross.T, lower=True, check_finite=False)
-        prior = self._prior_variance(charts)
-        variance = prior - np.einsum("nm,nm->m", reduced, reduced) + self.settings.noise
+        explained = np.empty(len(cross))
+        for begin in range(0, len(cross), _AT_ONCE):
+            some = slice(begin, begin + _AT_ONCE)
+            reduced = solve_triangular(self.factor, cross[some].T, lower=True, check_finite=False)
+            explained[some] = np.einsum("nm,nm->m", reduced, reduced)
+        variance = self._prior_variance(charts) - explained + self.settings.noise
         return cross @ self.weights, variance
 
     def _prior_variance(self, charts: Samples) -> Array:
