@@ -110,8 +110,8 @@ _pack: Any = vars(viser_scene)["_encode_image_binary"]
 
 
 def _packed(image: Any, *args: Any, **options: Any) -> Any:
-    """A picture's format and content; bytes are a PNG."""
-    return ("png", image) if isinstance(image, bytes) else _pack(image, *args, **options)
+    """A picture's format and content; bytes are a WebP."""
+    return ("webp", image) if isinstance(image, bytes) else _pack(image, *args, **options)
 
 
 vars(viser_scene)["_encode_image_binary"] = _packed

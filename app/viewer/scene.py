@@ -200,9 +200,9 @@ class SceneWriter:
             return
         turned, depth = SHEETS[side]
         width, height = UNITS_PER_MM * ground.reach_mm
-        png: Any = picture  # packed already; see app.viewer.private_port
+        packed: Any = picture  # see app.viewer.private_port
         image = self._server.scene.add_image(
-            f"/{side}", png, float(width), float(height), format="png", wxyz=turned,
+            f"/{side}", packed, float(width), float(height), wxyz=turned,
             position=(0.0, 0.0, -depth * UNITS_PER_MM * ground.top_mm), **UNSHADED,
         )  # fmt: skip
         self._put(side, image)

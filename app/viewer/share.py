@@ -18,7 +18,7 @@ from ..requests.charts import to_stitches
 from ..service.problems import ServiceError
 from .incoming import WantedPicture
 from .relay import with_scripts
-from .sheet import sheet_png
+from .sheet import packed_sheet
 from .still import still_png
 from .views import View, new_view
 
@@ -160,8 +160,8 @@ def _recorded(request: SharedViewRequest, computed: Computed, context: Context) 
         if request.animated:
             view.show(drawing)
         else:
-            view.show(drawing, sheet_png(first))
-            view.writer.show_back(drawing, sheet_png(first, back=True))
+            view.show(drawing, packed_sheet(first))
+            view.writer.show_back(drawing, packed_sheet(first, back=True))
         serializer = view.server.get_scene_serializer()
         played = False  # over and over, unless it has no length
         for scene in scenes:

@@ -1,8 +1,7 @@
 """Cloth from afar: pictures of its face and of its back, in which every stitch is drawn."""
 
+import io
 import math
-import struct
-import zlib
 from collections.abc import Callable
 
 import numpy as np
@@ -19,7 +18,6 @@ from ..drawing.computed import PosedView, StretchView
 from ..drawing.design_view import ViewRequest, build_scene
 from ..drawing.fabric import Drawing, FabricScene
 from .balls import Balls, Picture, drawn, points_along
-from .incoming import PNG_HEAD
 
 PIXELS = 2_000_000
 LONGEST = 4096
@@ -34,9 +32,8 @@ CLOSED = 5
 """Half of the width up to which a gap has shade in it, pixels: it is cloth, not a hole."""
 SOFT = 0.9
 """Standard deviation in pixels by which a picture is blurred, or loops and pixels would beat."""
-PACKED = 3
-"""zlib's level for pictures on their way to browsers: with higher ones, they are a tenth smaller
-and take four times as long."""
+QUALITY = 90
+"""Of pictures on their way to browsers, 0 to 100."""
 SHIFTS = np.array([0.7549, 0.5698])
 """Pixels by which stitches are shifted from row to row, and from column to column, without their
 whole part (Roberts's evenly spread sequence): loops would slowly fall out of step with pixels and
@@ -55,7 +52,7 @@ def build_drawing(
 ) -> tuple[Drawing, bytes | None]:
     """Draw a large chart, which has no stretch test or shape, and its face; runs in a worker."""
     scene = build_scene(request, None, supplies.context(cancelled=cancelled))
-    return scene.drawing(), sheet_png(scene)
+    return scene.drawing(), packed_sheet(scene)
 
 
 def build_back(
@@ -67,34 +64,20 @@ def build_back(
 ) -> bytes | None:
     """Draw the back of a design; runs in a worker."""
     scene = build_scene(request, computed, supplies.context(cancelled=cancelled))
-    return sheet_png(scene, back=True)
+    return packed_sheet(scene, back=True)
 
 
-def sheet_png(scene: FabricScene, *, back: bool = False) -> bytes | None:
+def packed_sheet(scene: FabricScene, *, back: bool = False) -> bytes | None:
     """The :func:`sheet_picture` as a file for browsers."""
     picture = sheet_picture(scene, back=back)
-    return None if picture is None else packed_png(picture)
+    return None if picture is None else packed(picture)
 
 
-def packed_png(picture: Picture) -> bytes:
-    """A picture as a PNG, each line as its difference from the one above.
-
-    PIL's and imageio's encoders take four times as long and keep other threads waiting; zlib does
-    not.
-    """
-    height, width, _ = picture.shape
-    lines = np.full((height, 1 + 4 * width), 2, np.uint8)  # each begins with the number of a filter
-    lines[:, 1:] = picture.reshape(height, -1)
-    lines[1:, 1:] -= picture.reshape(height, -1)[:-1]
-    head = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)  # 8 bits, red to opacity
-    chunks = ((b"IHDR", head), (b"IDAT", zlib.compress(lines.data, PACKED)), (b"IEND", b""))
-    return PNG_HEAD[:8] + b"".join(
-        struct.pack(">I", len(content))
-        + name
-        + content
-        + struct.pack(">I", zlib.crc32(name + content))
-        for name, content in chunks
-    )
+def packed(picture: Picture) -> bytes:
+    """A picture as a WebP: a seventh of a PNG, in half the time, and other threads go on."""
+    file = io.BytesIO()
+    Image.fromarray(picture, "RGBA").save(file, "WEBP", quality=QUALITY, method=0)
+    return file.getvalue()
 
 
 def sheet_picture(scene: FabricScene, *, back: bool = False) -> Picture | None:

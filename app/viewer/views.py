@@ -82,7 +82,8 @@ class Views:
         self._idle_s = idle_s
         self._views: dict[str, View] = {}
         self._coarse: dict[str, bool] = {}  # of each user's last browser, for the next view
-        self._lock = threading.Lock()
+        self._lock = threading.Lock()  # the event loop waits for it: held for a moment only
+        self._opening = threading.Lock()  # held while a view is made or closed for another
 
     def open(self, design: str, stitches: int = 0) -> View:
         """The design's view, made if it is not there; its name begins with its owner's.
@@ -98,20 +99,29 @@ class Views:
         UnavailableError
             If as many views as allowed are being watched.
         """
-        with self._lock:
+        with self._opening:
             self._make_room(design, stitches)
-            view = self._views.get(design)
+            view = self._kept(design, stitches)
             if view is None:
-                view = self._views[design] = new_view()
+                view = new_view()
                 view.writer.coarse = self._coarse.get(_owner(design), False)
+                view.stitches = stitches
                 self._pass_clicks_on(design, view)
-            view.last_used, view.stitches = time.monotonic(), stitches
+                with self._lock:
+                    self._views[design] = view
+            return view
+
+    def _kept(self, design: str, stitches: int) -> View | None:
+        """The design's view, if it is open, which from now on shows so many stitches."""
+        with self._lock:
+            view = self._views.get(design)
+            if view is not None:
+                view.last_used, view.stitches = time.monotonic(), stitches
             return view
 
     def get(self, design: str) -> View | None:
         """The design's view, if it is open."""
-        with self._lock:
-            return self._views.get(design)
+        return self._views.get(design)
 
     def watch(self, design: str, change: int, *, coarse: bool = False) -> None:
         """Count a watcher in (+1) or out (-1); for one without a GPU the view draws coarsely."""
@@ -152,8 +162,10 @@ class Views:
 
     def stitches(self, owner: str) -> int:
         """Stitches of a user's views together, a rectangle counted as 20."""
-        views = (self.get(design) for design in self._of(owner))
-        return sum(view.stitches for view in views if view is not None)
+        return self._stitches_of(self._of(owner))
+
+    def _stitches_of(self, designs: list[str]) -> int:
+        return sum(view.stitches for view in map(self.get, designs) if view is not None)
 
     def _of(self, owner: str) -> list[str]:
         return [design for design in list(self._views) if _owner(design) == owner]
@@ -171,9 +183,7 @@ class Views:
 
     def _make_room(self, design: str, stitches: int) -> None:
         others = [view for view in self._of(_owner(design)) if view != design]
-        while (held := sum(self._views[d].stitches for d in others)) and (
-            held + stitches > USER_LIMITS.view_stitches
-        ):
+        while (held := self._stitches_of(others)) and (held + stitches > USER_LIMITS.view_stitches):
             refusal = OverLimitError.of("view_stitches", held, USER_LIMITS.view_stitches)
             others.remove(self._close_oldest(others, refusal))
         if design in self._views:
@@ -185,11 +195,14 @@ class Views:
             self._close_oldest(list(self._views), full)
 
     def _close_oldest(self, among: list[str], refusal: ServiceError) -> str:
-        unwatched = [(self._views[d].last_used, d) for d in among if not self._views[d].watchers]
-        if not unwatched:
-            raise refusal
-        oldest = min(unwatched)[1]
-        self._views.pop(oldest).stop()
+        with self._lock:
+            open_ones = ((view, d) for d in among if (view := self._views.get(d)))
+            unwatched = [(view.last_used, d) for view, d in open_ones if not view.watchers]
+            if not unwatched:
+                raise refusal
+            oldest = min(unwatched)[1]
+            closed = self._views.pop(oldest)
+        closed.stop()
         return oldest
 
 

@@ -34,7 +34,7 @@ from ...viewer.share import (
     shared_solid,
     shared_still,
 )
-from ...viewer.sheet import build_back, build_drawing, sheet_png
+from ...viewer.sheet import build_back, build_drawing, packed_sheet
 from ...viewer.views import View, Views
 from ..compute.compute import Compute
 from ..designs.parameters import DesignId, private_name
@@ -106,7 +106,7 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     def draw() -> tuple[Drawing, bytes | None, ViewResult]:
         if made is None:
             scene = build_scene(body, computed, context)
-            drawing, face = scene.drawing(), sheet_png(scene)
+            drawing, face = scene.drawing(), packed_sheet(scene)
         else:
             drawing, face = made
         return (
