@@ -3,7 +3,9 @@
 import contextlib
 import gc
 import os
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -13,7 +15,7 @@ import viser
 from app.service import memory
 from app.service.limits.user_limits import OverLimitError, UserLimits
 from app.viewer import views as views_module
-from app.viewer.views import Views
+from app.viewer.views import View, Views
 from tests.app.clients import served, state_of, watching
 from tests.app.rest import draw
 from tests.app.running import threads_of_no_pool, wait_until
@@ -33,6 +35,24 @@ def _held() -> tuple[int, int]:
 
 def _servers() -> int:
     return sum(type(thing) is viser.ViserServer for thing in gc.get_objects())
+
+
+def test_nobody_waits_while_a_view_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, may_be_made = views_module.new_view, threading.Event()
+
+    def slowly_made() -> View:
+        may_be_made.wait(60)
+        return made()
+
+    monkeypatch.setattr(views_module, "new_view", slowly_made)
+    with closing(Views(2, 60.0)) as views, ThreadPoolExecutor() as threads:
+        opening = threads.submit(views.open, "ada/slow")
+        wait_until(opening.running)
+        assert views.get("ada/slow") is None
+        views.watch("ada/slow", +1)
+        assert views.close_idle() == 0
+        may_be_made.set()
+        assert opening.result() is views.get("ada/slow")
 
 
 def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:

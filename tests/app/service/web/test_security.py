@@ -1,6 +1,7 @@
 import asyncio
 import logging
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -13,6 +14,7 @@ from itsdangerous import URLSafeTimedSerializer
 
 from app.service.main import THREADS, create_app
 from app.service.settings import Settings
+from app.service.web import security
 from app.service.web.bodies import MAX_VALUES
 from app.service.web.security import (
     LOGIN_FAILURES,
@@ -107,6 +109,12 @@ def test_a_link_with_a_token_leads_nowhere_else(guarded: TestClient) -> None:
     link = guarded.get(f"http://knit.example//evil.example/?token={TOKEN}", follow_redirects=False)
     assert link.headers["location"] == "/evil.example/"
     guarded.cookies.clear()
+
+
+@pytest.fixture(autouse=True)
+def soon_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Requests that come too often are refused after a moment."""
+    monkeypatch.setattr(security, "REFUSED_AFTER_S", 0.02)
 
 
 @pytest.mark.parametrize("cookie", ["nonsense", "W10.x.y", "", '"', None])
@@ -280,7 +288,9 @@ def test_a_client_over_its_rate_learns_when_to_retry(
         first = client.get("/api/v1/patterns", headers=ada).headers
         assert (first["ratelimit-limit"], first["ratelimit-remaining"]) == ("2", "1")
         client.get("/api/v1/patterns", headers=ada)
+        begun = time.monotonic()
         late = client.get("/api/v1/patterns", headers=ada)
+        assert time.monotonic() - begun >= security.REFUSED_AFTER_S
         assert (late.status_code, late.json()["type"]) == (429, "/problems/too-many")
         assert late.headers["retry-after"] == "2"
         assert client.get("/api/v1/patterns", headers=bob).status_code == 200
