@@ -46,6 +46,7 @@ from knitcore.formats.write.extensibility_drawing import region_fields
 from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
+from knitcore.materials.yarn_per_stitch import mean_yarn
 from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.prediction.prediction import Source
 from tests.knitcore.charts import stitch_charts
@@ -481,6 +482,19 @@ def test_a_pattern_and_a_report_have_the_size_words_and_symbols_of_all_stitches(
     assert report.SOURCES.keys() == set(Source)
     gauged = ExportOptions(gauge=RelaxedSize(5.0, 4.0))
     assert "6.0 × 3.2 cm at rest" in text(gauged)
+
+
+def test_a_pattern_counts_the_yarn_of_every_stitch_as_predict_does() -> None:
+    slipped = SymbolChart.parse("VK;KK").tile(5, 6)
+    plain = SymbolChart.parse("KK;KK").tile(5, 6)
+    metres = []
+    for chart in (slipped, plain):
+        drawing = export_chart(chart, ExportKind.PATTERN_SVG, ACRYLIC).content.decode()
+        text = re.sub(r"(\s|<[^>]*>)+", " ", drawing)
+        metres.append(float(re.findall(r"In all ([\d.]+) m", text)[0]))
+        mean, _ = mean_yarn(chart, ACRYLIC)
+        assert metres[-1] == pytest.approx(mean * chart.cells.size / 1000, rel=5e-3)
+    assert metres[0] < 0.85 * metres[1]
 
 
 def test_a_solid_of_other_stitches_has_a_closed_tube_for_every_row() -> None:
