@@ -42,7 +42,7 @@ from knitcore.machine.home.punch_card import punch_card
 from knitcore.machine.profile import MachineProfile, machine_of
 from knitcore.machine.program import Finish
 from knitcore.machine.setting import MachineSetting, setting_of
-from knitcore.machine.stitch_program import check_first_row
+from knitcore.machine.stitch_program import stitches_from_row
 from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import (
     YARN_OF_FLOAT,
@@ -262,16 +262,16 @@ def _of_extension(kind: str) -> Exporter:
 def _knitout_of_stitches(
     chart: SymbolChart, material: Material, options: ExportOptions
 ) -> ExportedFile:
-    check_first_row(options.from_row)
-    return _knitout(chart, material, options)
+    return _knitout(stitches_from_row(chart, options.from_row), material, options)
 
 
 def _knitout(
     chart: Piece | SymbolChart, material: Material, options: ExportOptions
 ) -> ExportedFile:
     machine = machine_of(options.layout.machine)
-    piece = chart if isinstance(chart, Piece) else Piece.plain(chart.plain)
-    piece = piece.from_row(options.from_row)
+    piece = (
+        chart.from_row(options.from_row) if isinstance(chart, Piece) else Piece.plain(chart.plain)
+    )
     setting = _setting(piece, machine, material, options)
     program = verified(
         piece if isinstance(chart, Piece) else chart,

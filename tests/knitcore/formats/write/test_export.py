@@ -422,6 +422,17 @@ def test_a_program_begins_at_any_row_after_a_jam(machine: str) -> None:
         export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(layout=layout, from_row=5))
 
 
+def test_a_program_of_other_stitches_begins_where_needles_hold_one_loop() -> None:
+    chart = SymbolChart.parse("KKKKKK;KO/\\OK;KVKKTK;KKKKKK;[2/2R]KK")
+    file = export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(from_row=3))
+    upper = SymbolChart.parse("KKKKKK;KO/\\OK;KVKKTK")
+    assert file.content == export_chart(upper, ExportKind.KNITOUT, ACRYLIC).content
+    assert any("hold row 2 on waste yarn" in note for note in file.notes)
+    for row, problem in ((4, "row 3 tucks or slips.* Begin at row 3"), (6, "no row 6")):
+        with pytest.raises(InputError, match=problem):
+            export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(from_row=row))
+
+
 @pytest.mark.parametrize("kind", ["hand-plan-text", "ayab", "punch-card-text"])
 def test_files_for_home_machines_follow_the_machine_of_the_design(kind: str) -> None:
     chart = StitchChart.of_fabric("rib", rows=4, columns=8)
