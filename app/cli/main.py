@@ -47,10 +47,6 @@ SECTIONS: dict[str, dict[str, Entry]] = {
             "Simulate the pure fabrics of yarns and fit their laws.",
         ),
         "relax": ("yarn.relax", "Compute the yarn's shape at rest in the repeat CHART."),
-        "relax-stitches": (
-            "yarn.relax_stitches",
-            "Compute the yarn's shape at rest in a repeat of any stitches.",
-        ),
         "whole": ("yarn.whole", "Compute the yarn's shape at rest in a whole CHART."),
         "tube": ("yarn.tube", "Compute the yarn's shape at rest in a tube knitted of CHART."),
         "sweep": ("yarn.sweep", "Stretch the yarn of the repeat CHART and fit a law to it."),

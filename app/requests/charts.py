@@ -95,6 +95,7 @@ AnyChartInput = Annotated[
 IS_REPEAT = "repeat"
 RepeatInput = Annotated[ChartInput, IS_REPEAT]
 """A chart that stands for its repeat: a pure fabric needs no size on the command line."""
+AnyRepeatInput = Annotated[AnyChartInput, IS_REPEAT]
 
 OutlineInput = Annotated[
     str | None,

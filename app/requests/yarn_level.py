@@ -18,6 +18,7 @@ from knitcore.chart.stitch_chart import (
     check_stitches,
     size_in_words,
 )
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials import Material
 from knitcore.materials.yarn_per_stitch import yarn_per_stitch
 from knitcore.yarn.library.yarns import ChartYarn, yarn_for, yarn_friction
@@ -133,7 +134,7 @@ class YarnLevelRequest(RowLengthsRequest):
     convention: Convention = Convention.PUBLISHED
     fresh: bool = Field(False, description="Compute again, even if the result is stored.")
 
-    def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
+    def inputs(self, repeat: StitchChart | SymbolChart, used: ChartYarn) -> dict[str, Any]:
         """Everything that decides a result, from which its stored name is made."""
         left_out = {"fresh", "chart", "material", "yarn_per_stitch"}  # lengths say it
         options = self.model_dump(mode="json", exclude=left_out)

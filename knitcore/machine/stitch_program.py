@@ -21,7 +21,7 @@ from knitcore.chart.stitch_chart import StitchChart
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
 from knitcore.chart.symbol_chart import SymbolChart
-from knitcore.garment.piece import Piece
+from knitcore.garment.piece import Piece, check_row
 from knitcore.machine.carriers import CarrierPlan
 from knitcore.machine.feed import is_leftwards
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile
@@ -58,16 +58,28 @@ def bed_map(graph: StitchGraph, *, tuck_with_knit: bool = True) -> Mask:
     return np.asarray(back, dtype=bool)
 
 
-def check_first_row(row: int) -> None:
-    """Refuse to begin above row 1, which only charts of knits and purls can.
+def stitches_from_row(chart: SymbolChart, number: int) -> SymbolChart:
+    """The chart from a row on, counted from 1.
 
     Raises
     ------
     InputError
+        If there is no such row, or its needles hold several loops, of which a cast-on has none.
     """
-    if row > 1:
-        problem = "a program with lace, cables, tucks or slips begins at row 1."
-        raise InputError("from_row", problem, "Give the rows that are left as a chart.")
+    check_row(number, chart.rows)
+    single = (chart.graph.act[: number - 1] == YarnAct.THROUGH) | (
+        np.diff(chart.graph.first, axis=1)[: number - 1] == 0
+    )
+    plain = single.all(axis=1)
+    if number > 1 and not plain[-1]:
+        before = max(np.flatnonzero(plain), default=-1) + 2
+        raise InputError(
+            "from_row",
+            f"row {number - 1} tucks or slips, so that needles hold more than a loop below row "
+            f"{number}.",
+            f"Begin at row {before}.",
+        )
+    return SymbolChart(chart.cells[number - 1 :])
 
 
 def stitch_program(

@@ -24,6 +24,7 @@ from knitcore.chart.fabric import PHASES, Fabric
 from knitcore.chart.phases import stitch_quarters
 from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials.law_uncertainty import Interval, log_interval
@@ -184,8 +185,7 @@ def mean_yarn(
 ) -> tuple[float, Interval]:
     """Yarn in the mean stitch of a chart, mm, with its 90 % interval.
 
-    A yarn over takes as much as a knit, a tuck and the float of a slipped stitch less
-    (:data:`YARN_OF_TUCK`, :data:`YARN_OF_FLOAT`). ``measured`` is of its knits and purls.
+    Other stitches take parts of it (:func:`yarn_of_acts`). ``measured`` is of its knits and purls.
 
     Raises
     ------
@@ -200,13 +200,30 @@ def mean_yarn(
     """
     plain = chart if isinstance(chart, StitchChart) else chart.plain
     used = yarn_per_stitch(plain, material, measured=measured)
-    share = 1.0
-    if not isinstance(chart, StitchChart):
-        graph = chart.graph
-        share -= (1 - YARN_OF_FLOAT) * float((graph.act == YarnAct.MISS).mean())
-        tucks = (graph.act == YarnAct.OVER) & (np.diff(graph.first, axis=1) > 0)
-        share -= (1 - YARN_OF_TUCK) * float(tucks.mean())
+    share = 1.0 if isinstance(chart, StitchChart) else float(yarn_of_acts(chart.graph).mean())
     return share * used.mean_mm, log_interval(share * used.mean_mm, used.log_sd)
+
+
+def yarn_of_acts(
+    graph: StitchGraph, *, yarn_over: float = 1.0, tuck: float = YARN_OF_TUCK,
+    slip: float = YARN_OF_FLOAT, crossing: float = 1.0,
+) -> Array:  # fmt: skip
+    """Yarn of every site as a part of a knit's, (rows, columns).
+
+    Parameters
+    ----------
+    yarn_over, tuck : of a loop that is laid over the needle.
+    slip : of the float that passes a slipped stitch.
+    crossing : of a loop that changes places with others in a cable.
+    """
+    sources = np.diff(graph.first, axis=1)
+    passing = np.zeros(graph.act.shape, dtype=bool)
+    row, column = np.nonzero(sources)
+    passing[row, column] = graph.layer[graph.first[row, column]] != 0
+    over = np.where(sources > 0, tuck, yarn_over)
+    through = np.where(passing, crossing, 1.0)
+    acts = [graph.act == act for act in (YarnAct.OVER, YarnAct.MISS)]
+    return np.asarray(np.select(acts, [over, np.full_like(over, slip)], through))
 
 
 def yarn_per_stitch(

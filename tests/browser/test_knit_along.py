@@ -1,5 +1,7 @@
 """Knitting along, row by row, on a phone."""
 
+import re
+
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
@@ -103,3 +105,20 @@ def test_another_device_goes_on_at_the_row(visitor: Page, service: str, browser:
     page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")  # looked at again
     expect(heading).to_have_text("Row 3 of 10")
     context.close()
+
+
+def test_other_stitches_are_drawn_as_they_hang_on_the_needles(visitor: Page, service: str) -> None:
+    runs = [
+        {"row": 0, "column": 1, "codes": "O/"},
+        {"row": 2, "column": 1, "codes": "[2/2R]"},
+        {"row": 2, "column": 6, "codes": "VT"},
+    ]
+    plain = "\n".join(["K" * 12] * 4)
+    page = opened(open_small_chart(flat(visitor), service, plain, other_stitches=runs))
+    picture = page.locator(".along-picture svg")
+    for row, count in ((1, 2), (3, 3)):
+        page.get_by_label("Go to row").fill(str(row))
+        page.keyboard.press("Tab")
+        expect(picture).to_have_attribute("aria-label", re.compile(f", {count} of other kinds"))
+        assert "L" in (picture.locator("path.sign").first.get_attribute("d") or "")
+    assert axe.violations_in_both_themes(page, "#along-dialog") == []

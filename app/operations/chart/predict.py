@@ -16,6 +16,7 @@ from knitcore.materials.interval_parts import Part
 from knitcore.materials.yarn_per_stitch import has_loop_length, mean_yarn
 from knitcore.prediction.hand import PULLS_N_PER_MM, hand_pulls
 from knitcore.prediction.predict import predict as predict_chart
+from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.stitch_effects import StitchDensities
 from knitcore.prediction.swept import worth_relaxing
 
@@ -95,6 +96,12 @@ class OtherStitchesResult(ResultModel):
     longest_float_mm: float = Field(
         description="Longest stretch of yarn behind or in front of slipped stitches, at rest."
     )
+    longest_float_interval_mm: Ends
+    yarn_m: float | None = Field(
+        description="Yarn of the chart, without cast-on and tails; null if the material has no "
+        "loop length."
+    )
+    yarn_interval_m: Ends | None
 
 
 class PredictResult(ElasticConstants, Extensibility, IntervalResult):
@@ -168,10 +175,10 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         "columns": chart.columns,
         "segments": {direction: segments.counts(direction) for direction in Direction},
         "worth_relaxing": None if to_relax is None else to_relax.text,
-        **_yarn(described, material),
+        **(yarn := _yarn(described, material)),
         "other_stitches": None
         if isinstance(described, StitchChart)
-        else _others(described, predicted.relaxed_course_mm),
+        else _others(described, predicted) | _yarn_of_all(described, yarn),
         "notes": [*notes, *predicted.notes],
         "narrowing": narrowings(described, material, predicted),
         "hand": hand_pulls(material, predicted) if request.hand else [],
@@ -187,13 +194,23 @@ def _yarn(chart: StitchChart | SymbolChart, material: Material) -> dict[str, Any
     return {"yarn_per_stitch_mm": mean, "yarn_per_stitch_interval_mm": ends}
 
 
-def _others(chart: SymbolChart, stitch_mm: float) -> dict[str, float]:
+def _yarn_of_all(chart: SymbolChart, yarn: dict[str, Any]) -> dict[str, Any]:
+    """Yarn of a chart, from that in its mean stitch."""
+    mean, ends = yarn["yarn_per_stitch_mm"], yarn["yarn_per_stitch_interval_mm"]
+    if mean is None:
+        return {"yarn_m": None, "yarn_interval_m": None}
+    metres = chart.cells.size / 1000
+    return {"yarn_m": mean * metres, "yarn_interval_m": [end * metres for end in ends]}
+
+
+def _others(chart: SymbolChart, predicted: Prediction) -> dict[str, Any]:
     """Densities of a chart's other stitches, and its longest float."""
-    made_of = StitchDensities.of(chart)
     passed = chart.graph.longest_float()
-    names = OtherStitchesResult.model_fields.keys() - {"longest_float_mm"}
-    shares = {name: getattr(made_of, name) for name in names}
-    return shares | {"longest_float_mm": stitch_mm * (passed + 1) if passed else 0.0}
+    wales = passed + 1 if passed else 0
+    return vars(StitchDensities.of(chart)) | {
+        "longest_float_mm": wales * predicted.relaxed_course_mm,
+        "longest_float_interval_mm": [wales * mm for mm in predicted.course.relaxed_interval_mm],
+    }
 
 
 def _lines(r: PredictResult) -> list[str]:
@@ -254,11 +271,16 @@ def _others_line(r: PredictResult) -> list[str]:
     of = r.other_stitches
     if of is None:
         return []
-    floats = f", floats up to {of.longest_float_mm:.1f} mm" if of.longest_float_mm else ""
+    low, high = of.longest_float_interval_mm
+    floats = f", floats up to {of.longest_float_mm:.1f} mm (90 %: {low:.1f} to {high:.1f})"
     counts = {"yarn overs": of.yarn_overs, "slips": of.slips, "tucks": of.tucks}
     shown = [f"{share:.0%} {name}" for name, share in counts.items() if share]
     crossings = [f"{of.crossings:.2f} crossings a stitch"] if of.crossings else []
-    return [f"other stitches  {', '.join([*shown, *crossings])}{floats}"]
+    lines = [f"other stitches  {', '.join([*shown, *crossings])}{floats * (high > 0)}"]
+    if of.yarn_m is not None and of.yarn_interval_m is not None:
+        least, most = of.yarn_interval_m
+        lines.append(f"yarn of all     {of.yarn_m:.3g} m (90 %: {least:.3g} to {most:.3g})")
+    return lines
 
 
 def _relaxed(r: PredictResult) -> str:

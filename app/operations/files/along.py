@@ -51,6 +51,10 @@ class AlongRowResult(ResultModel):
     yarns: list[tuple[int, int]] = Field(
         description="Stitches and number of the yarn of each stretch, from the left."
     )
+    codes: list[str] = Field(
+        description="Stitches of a chart with others than knits and purls as they are worked, from "
+        "the knitter's left; empty for any other."
+    )
 
 
 class AlongYarn(ResultModel):

@@ -17,7 +17,7 @@ from knitcore.machine.home.plan_rows import minutes_in_words
 from knitcore.machine.profile import machine_of
 from knitcore.machine.program import Finish
 from knitcore.machine.setting import setting_of
-from knitcore.machine.stitch_program import check_first_row, stitch_program
+from knitcore.machine.stitch_program import stitch_program, stitches_from_row
 from knitcore.machine.tension import Verdict
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
 
@@ -111,7 +111,9 @@ def program(request: ProgramReportRequest, context: Context) -> ProgramReportRes
     chart = to_stitches(request.chart)
     check_stitches(chart.rows * chart.columns, MAX_STITCHES, instead=" for a program")
     material, machine = context.material(request.material), machine_of(request.machine)
-    others = chart if isinstance(chart, SymbolChart) else None
+    others = None
+    if isinstance(chart, SymbolChart):
+        others = chart = stitches_from_row(chart, request.from_row)
     piece = _piece(chart, request)
     mm = request.loop_length_mm
     setting = setting_of(
@@ -161,7 +163,6 @@ def _piece(chart: StitchChart | SymbolChart, request: ProgramReportRequest) -> P
     """The piece of a request: that of the purl map of other stitches."""
     if isinstance(chart, SymbolChart):
         check_bare(request)
-        check_first_row(request.from_row)
         return replace(Piece.plain(chart.plain), gauge=request.relaxed_size)
     piece = replace(piece_of(chart, request), gauge=request.relaxed_size)
     return piece.from_row(request.from_row)

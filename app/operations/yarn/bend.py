@@ -7,6 +7,8 @@ from pydantic import Field
 
 from knitcore.chart.fabric import Direction
 from knitcore.yarn.library.store import stored_for
+from knitcore.yarn.loops.relaxed_stitches import StitchHistory, relax_stitches
+from knitcore.yarn.loops.stitch_response import bend_stitches
 from knitcore.yarn.study.bending import (
     MAX_STITCHES,
     Curl,
@@ -20,7 +22,8 @@ from knitcore.yarn.study.relax import relax
 from ...context import Context
 from ...requests.base import ResultModel
 from ...requests.fabrics import LawsRequest
-from ...requests.yarn_level import StitchRequest, YarnResult
+from ...requests.stitches_at_rest import AnyStitchesRequest
+from ...requests.yarn_level import YarnResult
 from ..registry import Command, Operation
 
 _FRICTIONLESS = (
@@ -29,7 +32,7 @@ _FRICTIONLESS = (
 )
 
 
-class BendRequest(StitchRequest, LawsRequest):
+class BendRequest(AnyStitchesRequest, LawsRequest):
     """A repeat and its yarn."""
 
     linear_density_g_per_m: float | None = Field(
@@ -88,7 +91,8 @@ class BendResult(ResultModel):
 def bend(request: BendRequest, context: Context) -> BendResult:
     """Bending rigidity, curl and shear of the repeat, relaxed with the chart's symmetries and
     compared with the minimum that it goes to without them. Those of the packaged repeats are
-    stored.
+    stored. Other stitches than knits and purls are bent as they rest without friction, unless their
+    cloth folds then.
 
     Raises
     ------
@@ -97,11 +101,22 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     ConvergenceError
         If no stable state is found.
     """
-    repeat = request.repeat(MAX_STITCHES)
+    stitches = request.others()
+    repeat = request.repeat(MAX_STITCHES) if stitches is None else stitches.plain
     used = request.yarn(repeat, context)
     loop = used.loop_length_mm
-    stored = stored_for(repeat, used)
-    if stored is not None and stored.bending is not None:
+    stored = None if stitches is not None else stored_for(repeat, used)
+    caution: tuple[str, ...] = ()
+    if stitches is not None:
+        request.check_parts(context)
+        rest = request.pass_to(
+            relax_stitches, stitches, used.yarn, loop, history=StitchHistory.AGITATED,
+            cancelled=context.cancelled,
+        )  # fmt: skip
+        bending, whence = RepeatBending(None, bend_stitches(rest)), ""
+        area, caution = rest.cell_course_mm * rest.cell_wale_mm, rest.notes
+        loop = float(rest.loop_lengths_mm.mean())
+    elif stored is not None and stored.bending is not None:
         bending, whence = stored.bending, ", stored"
         area = stored.cell_course_mm * stored.cell_wale_mm
     else:
@@ -109,7 +124,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         bending, whence = repeat_bending(relaxed, cancelled=context.cancelled), ""
         area = relaxed.cell_course_mm * relaxed.cell_wale_mm
     shown, stable = bending.shown, bending.stable
-    notes = [_FRICTIONLESS, *_failures(bending), *_compared(bending)]
+    notes = [_FRICTIONLESS, *caution, *_failures(bending), *_compared(bending)]
     density = request.linear_density_g_per_m
     weight = None if density is None else weight_n_per_mm2(density, loop, area)
     if not stable.minimum:

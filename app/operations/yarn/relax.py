@@ -10,9 +10,11 @@ from pydantic import Field
 from knitcore.base.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.chart.phases import pure_fabric
 from knitcore.chart.stitch_chart import StitchChart, size_in_words
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials.law_uncertainty import YARN_LEVEL_ERRORS
 from knitcore.prediction.swept import size_from_relaxation
 from knitcore.yarn.library.yarns import ChartYarn, phase_shares
+from knitcore.yarn.loops.relaxed_stitches import MAX_STITCHES
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.relaxed_cell import RelaxedCell
 from knitcore.yarn.solve.splines import has_mirrors, size_intervals
@@ -24,11 +26,12 @@ from knitcore.yarn.study.whole_chart import WINDOWS_FROM
 from ...cli.options import loop_lengths
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, Known, Positive, ResultModel
+from ...requests.charts import RepeatText
 from ...requests.fabrics import RelaxedGauge
+from ...requests.stitches_at_rest import NO_INTERVAL, AnyHistory, RestedRequest
 from ...requests.yarn_level import (
     HISTORIES,
     RestSizeResult,
-    RubbedRequest,
     YarnResult,
     kept_or_made,
     on_splines,
@@ -38,8 +41,12 @@ from ...requests.yarn_level import (
 from ..registry import Command, Operation
 
 
-class RelaxRequest(RubbedRequest):
+class RelaxRequest(RestedRequest):
     """A repeat, its yarn, what is held while it relaxes, and the fabric's history of loading."""
+
+    of_knits_and_purls = (
+        "branch", "flat", "cell_course_mm", "cell_wale_mm", "loop_lengths_mm", "yarn_per_stitch",
+    )  # fmt: skip
 
     branch: Branch | None = Field(
         None,
@@ -49,10 +56,12 @@ class RelaxRequest(RubbedRequest):
         f"have friction, keep them; repeats of more than {FOLLOWED_UP_TO} stitches are relaxed in "
         "the free branch.",
     )
-    history: History | None = Field(
+    history: AnyHistory | None = Field(
         None,
         description="History of the fabric before it came to rest, with the friction of the yarn "
-        "unless a coefficient is given. As-knitted if only a coefficient is given.",
+        "unless a coefficient is given. As-knitted if only a coefficient is given. Charts with "
+        "other stitches than knits and purls are blocked (pulled both ways) by default, and have "
+        "no stretched histories; knits and purls are not blocked.",
     )
 
     cell_course_mm: Positive | None = Field(None, description="Hold a stitch at this width.")
@@ -67,10 +76,16 @@ class RelaxRequest(RubbedRequest):
     def with_friction(self, context: Context) -> Self:
         """The request with its coefficient of friction and its history."""
         request = super().with_friction(context)
-        if not request.has_friction:
+        if self.others() is not None or not request.has_friction:
             return request
+        if request.history is AnyHistory.BLOCKED:
+            raise InputError(
+                "history",
+                "blocked is for charts with other stitches than knits and purls.",
+                f"Use {', '.join(History)}.",
+            )
         usual = {
-            "history": request.history or History.KNITTED,
+            "history": request.history or AnyHistory.KNITTED,
             "branch": request.branch or Branch.MIRRORED,
         }
         return request.model_copy(update=usual)
@@ -108,16 +123,37 @@ class RelaxResult(IntervalResult):
     kind: Literal["relax"] = "relax"
     branch: Branch
     convention: Convention
+    pattern: RepeatText
     repeat_rows: int = Field(
         description="Rows of the repeat; at least 2 in the free branch, as are the columns."
     )
     repeat_columns: int
-    cell_course_mm: float
-    cell_wale_mm: float
+    cell_course_mm: float | None = Field(
+        description="Width of a stitch; null where a cloth of other stitches folds."
+    )
+    cell_wale_mm: float | None
     cell_course_interval_mm: Ends | None = Field(
-        description="90 % interval for knitted cloth; null for a width that was held."
+        description="90 % interval for knitted cloth; null for a width that was held, and for "
+        "other stitches than knits and purls."
     )
     cell_wale_interval_mm: Ends | None
+    thickness_mm: float = Field(description="From the lowest to the highest yarn.")
+    folded: bool | None = Field(
+        None,
+        description="True where rows or columns of the cloth stand up; null, as are the next "
+        "three, for knits and purls.",
+    )
+    hole_share: float | None = Field(
+        None, description="Part of the cloth that no yarn covers, 0 to 1; null where it folds."
+    )
+    eyelet_mm2: float | None = Field(
+        None,
+        description="Mean area of the holes of yarn overs, neighbouring ones together; null "
+        "without any, and where the cloth folds.",
+    )
+    crossings: int | None = Field(
+        None, description="Crossings of the yarn that the chart asks for, all kept."
+    )
     energy_n_mm: float
     bending_share: float
     contact_share: float
@@ -138,7 +174,7 @@ class RelaxResult(IntervalResult):
     friction: float | None = Field(
         None, description="Coefficient of friction that was used; null without friction."
     )
-    history: History | None = Field(
+    history: AnyHistory | None = Field(
         None, description="History after which the fabric comes to rest; null without friction."
     )
     rest_sizes: list[RestSizeResult] | None = Field(
@@ -186,9 +222,12 @@ class RelaxResult(IntervalResult):
 def relax(request: RelaxRequest, context: Context) -> RelaxResult:
     """Shape of least energy of the repeat; stops when the caller disconnects.
 
-    With friction, the shape in which the fabric comes to rest after a history of loading. A
-    relaxation that was run before is returned from storage.
+    With friction, the shape in which the fabric comes to rest after a history of loading; that is
+    always so for other stitches than knits and purls. A relaxation that was run before is returned
+    from storage.
     """
+    if (stitches := request.others()) is not None:
+        return request.kept_or_made_of_others(RelaxResult, context, stitches, _relaxed_others)
     request = request.with_friction(context)
     result = kept_or_made(RelaxResult, request, context, _relaxed)
     return result.model_copy(update={"gauge": _gauge(request, result, context)})
@@ -217,6 +256,7 @@ def _relaxed(
         cell_course_interval_mm=free[0],
         cell_wale_interval_mm=free[1],
         interval_source=YARN_LEVEL_ERRORS,
+        pattern=cell.chart.key,
         repeat_rows=cell.chart.rows,
         repeat_columns=cell.chart.columns,
         force_course_n=cell.force_n[0],
@@ -228,13 +268,42 @@ def _relaxed(
     )
 
 
+def _relaxed_others(
+    request: RelaxRequest, stitches: SymbolChart, used: ChartYarn, context: Context
+) -> RelaxResult:
+    rest = request.at_rest(stitches, used, context)
+    cell = rest.state.cell
+    known = {
+        name: None if rest.folded else getattr(rest, name)
+        for name in ("cell_course_mm", "cell_wale_mm", "hole_share", "eyelet_mm2")
+    }
+    return RelaxResult.of(
+        cell,
+        **known,
+        pattern=rest.pattern,
+        repeat_rows=cell.chart.rows,
+        repeat_columns=cell.chart.columns,
+        cell_course_interval_mm=None,
+        cell_wale_interval_mm=None,
+        interval_source=NO_INTERVAL,
+        folded=rest.folded,
+        crossings=rest.crossings,
+        friction=rest.friction,
+        history=AnyHistory(rest.history),
+        force_course_n=cell.force_n[0],
+        force_wale_n=cell.force_n[1],
+        yarn=YarnResult.of_chart(used),
+        centre_lines_mm=rest.centre_lines.tolist() if request.centre_lines else None,
+    )
+
+
 def _after_history(
     zero: RelaxedRepeat, friction: float, request: RelaxRequest, context: Context
 ) -> tuple[RelaxedCell, list[RestSizeResult]]:
     """The state free of force after the request's history, and the size after each history."""
     began = time.process_time()
     rests = rest_sizes(zero, friction, cancelled=context.cancelled)
-    (cell,) = (rest.state.cell for rest in rests if rest.history is request.history)
+    (cell,) = (rest.state.cell for rest in rests if str(rest.history) == request.history)
     after = replace(
         cell,
         starts=zero.starts,
@@ -276,6 +345,8 @@ def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> Rela
     )
     if known is None or plain not in alike:
         return None
+    if known.cell_course_mm is None or known.cell_wale_mm is None:
+        return None
     if not material.is_simulated or pure_fabric(repeat) is not None:
         return None
     pure_mm = {}
@@ -284,6 +355,8 @@ def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> Rela
         try:
             pure = relax(alike[1].model_copy(update={"chart": text}), context)
         except (ConvergenceError, UnravelledError):
+            return None
+        if pure.cell_course_mm is None or pure.cell_wale_mm is None:
             return None
         pure_mm[fabric] = (pure.cell_course_mm, pure.cell_wale_mm)
     cell_mm = known.cell_course_mm, known.cell_wale_mm
@@ -310,18 +383,42 @@ def _other_shape(name: str, shape: OtherShapeResult | None, why: str) -> list[st
     return [f"{name:16}{size}, {shape.energy_n_mm:.4f} N·mm{why}"]
 
 
+def _size(r: RelaxResult) -> str:
+    if r.cell_course_mm is None or r.cell_wale_mm is None:
+        return "has no size, as the cloth folds"
+    return (
+        f"{r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
+        f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}"
+    )
+
+
+def _other_stitches(r: RelaxResult) -> list[str]:
+    if r.crossings is None:
+        return []
+    holes = "not known, as the cloth folds"
+    if r.hole_share is not None:
+        eyelets = "" if r.eyelet_mm2 is None else f", {r.eyelet_mm2:.1f} mm² an eyelet"
+        holes = f"{r.hole_share:.0%} of the cloth{eyelets}"
+    friction = "" if r.friction is None else f", friction {r.friction:g}"
+    return [
+        f"history         {r.history}{friction}",
+        f"holes           {holes}",
+        f"crossings       {r.crossings}, all as the chart asks",
+    ]
+
+
 def _lines(r: RelaxResult) -> list[str]:
     return [
         f"repeat          {size_in_words(r.repeat_columns, r.repeat_rows)}, {r.branch} branch",
-        f"stitch          {r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
-        f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}",
+        f"stitch          {_size(r)}, {r.thickness_mm:.2f} mm thick",
+        *_other_stitches(r),
         *_other_shape("with mirrors", r.mirrored, "; laws and learned answers are of this shape"),
         *_other_shape("without mirrors", r.unmirrored, ""),
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
         f"bending, {100 * r.contact_share:.1f} % contact",
         f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
         *(
-            f"{rest_line(rest)}{', here' * (rest.history is r.history)}"
+            f"{rest_line(rest)}{', here' * (str(rest.history) == r.history)}"
             for rest in r.rest_sizes or ()
         ),
         *_gauge_line(r.gauge),
@@ -339,7 +436,9 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        more="It is free of force, and has no friction unless --friction or --history asks for it.",
+        more="It is free of force, and has no friction unless --friction or --history asks for it. "
+        "Charts of any stitches, as 'KKKK;O/\\O', may have up to "
+        f"{MAX_STITCHES}, and are blocked, with friction; `predict` has the size of their cloth.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,
     ),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -10,13 +10,16 @@ from pydantic import Field
 from knitcore.base.errors import InputError, KnitcoreError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.materials.law_uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_STRAIN_LOG_SD,
     log_interval,
 )
+from knitcore.prediction.stitch_effects import STRETCH_FACTOR
 from knitcore.yarn.library.law_of_stretches import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
 from knitcore.yarn.library.yarns import ChartYarn
+from knitcore.yarn.loops.stitch_response import stretch_stitches
 from knitcore.yarn.model.relaxed_cell import RelaxedCell, Sweep
 from knitcore.yarn.study.hysteresis import Hysteresis, hysteresis, pull
 from knitcore.yarn.study.relax import Branch
@@ -26,13 +29,8 @@ from ...cli.options import loop_lengths
 from ...context import Context
 from ...requests.base import EndsOfList, Floats, IntervalResult
 from ...requests.fabrics import ElasticConstants, law_fields
-from ...requests.yarn_level import (
-    RubbedRequest,
-    YarnResult,
-    kept_or_made,
-    on_splines,
-    relax_requested,
-)
+from ...requests.stitches_at_rest import AnyHistory, RestedRequest
+from ...requests.yarn_level import YarnResult, kept_or_made, on_splines, relax_requested
 from ..registry import Command, Operation
 
 FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
@@ -48,8 +46,23 @@ _HOW = {
 """Notes on friction, without and with the way back."""
 
 
-class SweepRequest(RubbedRequest):
+_OF_OTHERS = (
+    f"{YARN_LEVEL_ERRORS} Nobody has measured stretches of lace, cables, slips or tucks: both ends "
+    f"are a factor of {STRETCH_FACTOR:g} farther."
+)
+
+
+class SweepRequest(RestedRequest):
     """A repeat, its yarn and the stretch."""
+
+    of_knits_and_purls = (
+        "flat", "loop_lengths_mm", "yarn_per_stitch", "slide_quenching", "there_and_back",
+    )  # fmt: skip
+    history: AnyHistory | None = Field(
+        None,
+        description="Treatment of a cloth with other stitches than knits and purls before it is "
+        "pulled: blocked by default, as-knitted, or agitated, which leaves no friction.",
+    )
 
     branch: Branch = Branch.MIRRORED
     direction: Direction = Field(description="Direction of the pull: along rows, or along columns.")
@@ -70,6 +83,16 @@ class SweepRequest(RubbedRequest):
     def has_friction(self) -> bool:
         """True if a coefficient is given, or the way back is asked for."""
         return self.friction is not None or self.there_and_back
+
+    def with_friction(self, context: Context) -> Self:
+        """The request with its coefficient of friction, and the history of other stitches."""
+        if self.others() is None and self.history is not None:
+            raise InputError(
+                "history",
+                "knits and purls are pulled from the state that shaking leaves.",
+                "Leave it out, or give --friction alone.",
+            )
+        return super().with_friction(context)
 
     def _against_friction(self) -> Iterator[InputError]:
         yield from super()._against_friction()
@@ -125,6 +148,9 @@ class SweepResult(IntervalResult):
     friction: float | None = Field(
         None, description="Coefficient of friction that was used; null without friction."
     )
+    history: AnyHistory | None = Field(
+        None, description="History of a cloth with other stitches; null for knits and purls."
+    )
     turn: int | None = Field(
         None,
         description="Index of the largest strain, where the fabric turns; null without the way "
@@ -150,8 +176,11 @@ def sweep(request: SweepRequest, context: Context) -> SweepResult:
 
     With friction, the first pull from the state that shaking leaves, and the release if it is asked
     for. The law is that of pulling, fitted to two further stretches, along courses and along wales.
-    A stretch that was run before is returned from storage.
+    Other stitches than knits and purls are pulled from rest after their history, with its friction,
+    unless their cloth folds there. A stretch that was run before is returned from storage.
     """
+    if (stitches := request.others()) is not None:
+        return request.kept_or_made_of_others(SweepResult, context, stitches, _of_others)
     return kept_or_made(SweepResult, request.with_friction(context), context, _result)
 
 
@@ -159,7 +188,25 @@ def _result(
     request: SweepRequest, repeat: StitchChart, used: ChartYarn, context: Context
 ) -> SweepResult:
     zero = relax_requested(repeat, used, request, context)
-    pulled = _pulling(zero, request, context)
+    return _swept(zero, _pulling(zero, request, context), request, used, context)
+
+
+def _of_others(
+    request: SweepRequest, stitches: SymbolChart, used: ChartYarn, context: Context
+) -> SweepResult:
+    rest = request.at_rest(stitches, used, context)
+    pulled = partial(stretch_stitches, rest, cancelled=context.cancelled)
+    return _swept(
+        rest.state.cell, pulled, request, used, context,
+        factor=STRETCH_FACTOR * FACTOR, how=f"Pulled once from rest as the {rest.history} cloth.",
+    )  # fmt: skip
+
+
+def _swept(
+    zero: RelaxedCell, pulled: Callable[..., Sweep], request: SweepRequest, used: ChartYarn,
+    context: Context, *, factor: float = FACTOR, how: str | None = None,
+) -> SweepResult:  # fmt: skip
+    """The result of pulling a shape at rest."""
     loop = _loop(zero, request, context)
     main = (
         loop.last_cycle
@@ -169,7 +216,7 @@ def _result(
     there = loop.turn + 1 if loop else len(main.cells)
     notes, seconds = list(main.notes), zero.seconds + main.seconds
     if request.friction is not None:
-        notes += [request.friction_note(context), _HOW[request.there_and_back]]
+        notes += [request.friction_note(context), how or _HOW[request.there_and_back]]
     law: SimulatedLaw | None = None
     try:
         both = {}
@@ -194,8 +241,9 @@ def _result(
         lost_per_cycle_n_per_mm=loop and loop.lost_per_cycle_n_per_mm,
         lost_share=loop and loop.lost_share,
         left_strain=loop and loop.left_strain,
-        strain_interval=tuple(np.sort([main.strain / FACTOR, main.strain * FACTOR], axis=0)),
-        interval_source=YARN_LEVEL_ERRORS,
+        history=request.history,
+        strain_interval=tuple(np.sort([main.strain / factor, main.strain * factor], axis=0)),
+        interval_source=YARN_LEVEL_ERRORS if request.history is None else _OF_OTHERS,
         law=None if law is None else _swept_law(law),
         converged=main.converged and there == request.points,
         seconds=seconds,
@@ -245,6 +293,7 @@ def _jumps_fitted(stretch: Sweep, law: SimulatedLaw) -> list[str]:
 
 
 def _lines(r: SweepResult) -> list[str]:
+    factor = FACTOR if r.history is None else STRETCH_FACTOR * FACTOR
     columns = zip(r.strain, r.transverse_strain, r.stress_n_per_mm, r.energy_n_mm, strict=True)
     lines = ["strain   across   stress N/mm   energy N·mm"]
     lines += [f"{a:6.3f}  {b:7.3f}  {c:11.5f}  {d:12.5f}" for a, b, c, d in columns]
@@ -261,7 +310,7 @@ def _lines(r: SweepResult) -> list[str]:
         ]
     return [
         *lines,
-        f"90 % interval of the strains of knitted cloth: a factor of {FACTOR:.1f} either way.",
+        f"90 % interval of the strains of knitted cloth: a factor of {factor:.1f} either way.",
     ]
 
 

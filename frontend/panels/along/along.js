@@ -6,6 +6,7 @@
  * @import {KnitAlongResult} from "../../types.js"
  */
 
+import { loadSigns } from "../../chart/symbols.js";
 import { loadSettings, saveSettings } from "../../design/store.js";
 import { h } from "../../elements/dom.js";
 import { Places, alongRequest, alongRows, repeatWords, resume, stepOf, waysOf } from "../../services/along.js";
@@ -146,6 +147,7 @@ export function create(studio, { keeper, open }) {
     const rows = await attempt(status, () => alongRows(alongRequest(studio, way)), load);
     if (chosen !== piece()) return; // another way was chosen meanwhile
     along = rows;
+    if (along?.rows.some(({ codes }) => codes?.length)) await loadSigns();
     await look();
     forth.disabled = back.disabled = !along;
     reading.hidden = !along;

@@ -5,7 +5,9 @@
  * @import {KnitAlongResult} from "../../types.js"
  */
 
+import { signOf } from "../../chart/symbols.js";
 import { drawing } from "../../elements/dom.js";
+import { isOther, kindOf } from "../../grid/kinds.js";
 
 /** Least and greatest width of a stitch, and its least height, px. */
 const CELL = [14, 44];
@@ -37,25 +39,51 @@ function sign(symbols, purl, x, y, size) {
 }
 
 /**
+ * The symbol of a stitch that is neither knit nor purl: its strokes, and its dots.
+ *
+ * @param {Symbols} symbols
+ * @param {string} code
+ * @param {number} x left edge
+ * @param {number} width of a cell @param {number} height
+ */
+function signs(symbols, code, x, width, height) {
+  const top = (height - width) / 2;
+  const at = (/** @type {[number, number]} */ [px, py]) => `${x + px * width} ${top + (1 - py) * width}`;
+  const { strokes, dots } = signOf(code, symbols);
+  return [strokes.map((points) => `M${points.map(at).join("L")}`), dots.map((dot) => `M${at(dot)}h0.01`)];
+}
+
+/** Stitches that are neither knit nor purl, and where they begin. @param {readonly string[]} codes */
+function* others(codes) {
+  let column = 0;
+  for (const code of codes) {
+    if (isOther(code)) yield /** @type {const} */ ([column, code]);
+    column += isOther(code) ? kindOf(code).width : 1;
+  }
+}
+
+/**
  * @param {KnitAlongResult} along
  * @param {number} row its number, from 0
  * @param {Symbols} symbols
  * @param {number} room px across
  */
 export function rowPicture({ rows, yarns, needles, marked }, row, symbols, room) {
-  const { stitches, first, leftwards, yarns: stretches, heading } = rows[row];
+  const { stitches, first, leftwards, yarns: stretches, heading, codes } = rows[row];
   const onMachine = needles.length > 0;
   const count = stitches.length;
   const cell = Math.round(Math.min(Math.max(room / count, CELL[0]), CELL[1]) * 10) / 10;
   const high = Math.max(cell, HIGH);
   const [width, height] = [count * cell, high + 20];
   const purls = [...stitches].filter((stitch) => stitch === "P").length;
+  const placed = [...others(codes ?? [])]; // rows that this browser kept long ago have none
+  const special = placed.length ? `, ${placed.length} of other kinds` : "";
   const { plot, add } = drawing({
     width,
     height,
     viewBox: `0 0 ${width} ${height}`,
     role: "img",
-    "aria-label": `${count} stitches, ${purls} ${onMachine ? marked : "purls"}. ${heading}`,
+    "aria-label": `${count} stitches, ${purls} ${onMachine ? marked : "purls"}${special}. ${heading}`,
   });
   const colours = stretches.flatMap(([length, yarn]) => Array(length).fill(yarns[yarn].colour));
   for (let index = 0; index < count; index++) {
@@ -86,6 +114,15 @@ export function rowPicture({ rows, yarns, needles, marked }, row, symbols, room)
       const place = { start: x, end: x + cell, middle }[anchor];
       add("text", { x: place, y: high + 16, "text-anchor": anchor }, name);
     }
+  }
+  for (const [column, code] of placed) {
+    const { width: columns, group } = kindOf(code);
+    const box = { x: column * cell + 0.5, y: 0.5, width: columns * cell - 1, height: high - 1 };
+    add("rect", { ...box, style: `fill: var(--${group})` });
+    signs(symbols, code, column * cell, cell, high).forEach((paths, dots) => {
+      const thick = dots ? cell * 0.22 : Math.max(2, cell * 0.1);
+      add("path", { d: paths.join(""), class: "sign", style: `stroke-width: ${thick}; fill: none` });
+    });
   }
   return plot;
 }

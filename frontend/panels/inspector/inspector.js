@@ -323,7 +323,8 @@ function othersInWords({ other_stitches: of, yarn_per_stitch_mm: yarn, yarn_per_
     shares.length && `Of its stitches ${shares.join(", ")}.`,
     of.crossings && `${figure(of.crossings)} crossings a stitch.`,
     yarn && `Yarn a stitch: ${figure(yarn)} mm${ends ? ` (${range(ends)})` : ""}.`,
-    of.longest_float_mm && `Longest float: ${figure(of.longest_float_mm)} mm.`,
+    of.yarn_m && `In all: ${figure(of.yarn_m)} m${of.yarn_interval_m ? ` (${range(of.yarn_interval_m)})` : ""}.`,
+    of.longest_float_mm && `Longest float: ${figure(of.longest_float_mm)} mm (${range(of.longest_float_interval_mm)}).`,
   ];
   return said.filter(Boolean).join(" ");
 }

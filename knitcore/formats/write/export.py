@@ -42,9 +42,14 @@ from knitcore.machine.home.punch_card import punch_card
 from knitcore.machine.profile import MachineProfile, machine_of
 from knitcore.machine.program import Finish
 from knitcore.machine.setting import MachineSetting, setting_of
-from knitcore.machine.stitch_program import check_first_row
+from knitcore.machine.stitch_program import stitches_from_row
 from knitcore.materials import Material
-from knitcore.materials.yarn_per_stitch import MeasuredYarn
+from knitcore.materials.yarn_per_stitch import (
+    YARN_OF_FLOAT,
+    YARN_OF_TUCK,
+    MeasuredYarn,
+    yarn_of_acts,
+)
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.size import RelaxedSize
@@ -257,16 +262,16 @@ def _of_extension(kind: str) -> Exporter:
 def _knitout_of_stitches(
     chart: SymbolChart, material: Material, options: ExportOptions
 ) -> ExportedFile:
-    check_first_row(options.from_row)
-    return _knitout(chart, material, options)
+    return _knitout(stitches_from_row(chart, options.from_row), material, options)
 
 
 def _knitout(
     chart: Piece | SymbolChart, material: Material, options: ExportOptions
 ) -> ExportedFile:
     machine = machine_of(options.layout.machine)
-    piece = chart if isinstance(chart, Piece) else Piece.plain(chart.plain)
-    piece = piece.from_row(options.from_row)
+    piece = (
+        chart.from_row(options.from_row) if isinstance(chart, Piece) else Piece.plain(chart.plain)
+    )
     setting = _setting(piece, machine, material, options)
     program = verified(
         piece if isinstance(chart, Piece) else chart,
@@ -361,7 +366,7 @@ def _punch_card_text(piece: Piece, _: Material, options: ExportOptions) -> Expor
 
 def _report(chart: Piece | SymbolChart, material: Material, options: ExportOptions) -> bytes:
     piece, style, prediction = _shown(chart, material, options)
-    words = _yarn_words(_counted(chart), material, options)
+    words = _yarn_words(chart, material, options)
     regions = options.layout.regions
     return design_report(piece, material, options.name, style, regions, words, prediction)
 
@@ -370,8 +375,8 @@ def _pattern(
     chart: Piece | SymbolChart, material: Material, options: ExportOptions
 ) -> tuple[Page, ...]:
     piece, style, prediction = _shown(chart, material, options)
-    facts = _yarn_facts(_counted(chart), material, options)
-    words = _yarn_words(_counted(chart), material, options)
+    facts = _yarn_facts(piece, chart, material, options)
+    words = _yarn_words(chart, material, options)
     return pattern_pages(piece, material, style, facts, options.photo, words, prediction)
 
 
@@ -388,11 +393,6 @@ def _shown(
     size = RelaxedSize(prediction.relaxed_course_mm, prediction.relaxed_wale_mm)
     piece = replace(Piece.plain(chart.plain), gauge=size)
     return piece, replace(_style(piece, material, options), stitches=chart), prediction
-
-
-def _counted(chart: Piece | SymbolChart) -> Piece:
-    """The piece whose loops are counted for the yarn: every stitch as a knit or a purl."""
-    return chart if isinstance(chart, Piece) else Piece.plain(chart.plain)
 
 
 def _solid(chart: Piece | SymbolChart, material: Material, scale: float, kind: str) -> bytes:
@@ -428,7 +428,7 @@ def _design(chart: Piece | SymbolChart, material: Material, options: ExportOptio
 def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
     width, height = mean_stitch_mm(piece.shaped, material, piece.gauge)
     aspect = min(max(float(height / width), 0.2), 5.0)
-    facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
+    facts = _yarn_facts(piece, piece, material, options) if len(piece.yarns) > 1 else ()
     marks = tuple(_repeat_mark(repeat) for repeat in options.layout.repeats if repeat.placements)
     regions = tuple(
         RegionMark(region.name, region.colour, region_cells(region, *piece.chart.purl.shape))
@@ -454,13 +454,15 @@ def _repeat_mark(repeat: DesignRepeat) -> RepeatMark:
     return RepeatMark(words, tuple((p.row, p.column, p.rows, p.columns) for p in repeat.placements))
 
 
-def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:
+def _yarn_facts(
+    piece: Piece, chart: Piece | SymbolChart, material: Material, options: ExportOptions
+) -> tuple[str, ...]:
     """Stitches, length and mass of each yarn, as far as the material knows its loops."""
     facts = []
     for index in range(len(piece.yarns)):
         cells = piece.cells(index)
         said = f"{int(cells.sum())} sts"
-        use = _yarn_use(piece, material, options, cells)
+        use = _yarn_use(chart, material, options, cells)
         if use is not None:
             mass = "" if use.mass_g is None else f", {use.mass_g:.1f} g"
             said = f"{said}, {use.length_m:.1f} m{mass}"
@@ -468,23 +470,42 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
     return tuple(facts)
 
 
-def _yarn_words(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:
+def _yarn_words(
+    chart: Piece | SymbolChart, material: Material, options: ExportOptions
+) -> tuple[str, ...]:
     """Say how much yarn the piece takes, if its loops are known."""
-    use = _yarn_use(piece, material, options)
+    use = _yarn_use(chart, material, options)
     return () if use is None else (f"In all {use}, by {use.source}.",)
 
 
 def _yarn_use(
-    piece: Piece, material: Material, options: ExportOptions, cells: Mask | None = None
+    chart: Piece | SymbolChart,
+    material: Material,
+    options: ExportOptions,
+    cells: Mask | None = None,
 ) -> YarnUse | None:
-    """Yarn of some stitches; None if neither the material nor the options have a loop length."""
+    """Yarn of some stitches; None if neither the material nor the options have a loop length.
+
+    Other stitches than knits and purls take their parts of a knit's yarn, on average.
+    """
+    piece = chart if isinstance(chart, Piece) else Piece.plain(chart.plain)
     try:
-        return yarn_use(
+        use = yarn_use(
             piece.shaped, material, linear_density_tex=options.linear_density_tex, cells=cells,
             size=piece.gauge, measured=options.measured_yarn,
         )  # fmt: skip
     except InputError:
         return None
+    part = 1.0 if isinstance(chart, Piece) else float(yarn_of_acts(chart.graph).mean())
+    if part == 1.0:
+        return use
+    return replace(
+        use,
+        length_m=part * use.length_m,
+        mass_g=None if use.mass_g is None else part * use.mass_g,
+        source=f"{use.source}, with {YARN_OF_TUCK:g} of a knit in a tuck and {YARN_OF_FLOAT:g} in "
+        "a slip, which are guesses",
+    )
 
 
 _TEXT = "text/plain; charset=utf-8"

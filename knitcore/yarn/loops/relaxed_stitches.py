@@ -13,10 +13,11 @@ from knitcore.base.arrays import Array
 from knitcore.base.choice import Choice
 from knitcore.base.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.chart.result import Result
-from knitcore.chart.stitch_chart import check_stitches
+from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
 from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.drawn_yarn import DrawnYarn
 from knitcore.yarn.loops.holes import holes, is_folded
 from knitcore.yarn.loops.stitch_energy import StitchEnergy, YarnPerAct
 from knitcore.yarn.loops.take_down import GRID, TakeDown, pulls_n, room_for_yarn
@@ -24,13 +25,14 @@ from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
 from knitcore.yarn.model.input_checks import check_loop
+from knitcore.yarn.model.relaxed_cell import Branch
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.tiling import centre_lines, refined_state
 from knitcore.yarn.model.yarn_model import YarnModel
-from knitcore.yarn.solve.clasps import clasp_code, same_clasps
-from knitcore.yarn.solve.friction import Rubbing, check_coefficient, rub
+from knitcore.yarn.solve.clasps import cell_is_knitted, clasp_code
+from knitcore.yarn.solve.friction import RubbedCell, Rubbing, check_coefficient, rub
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
-from knitcore.yarn.solve.splines import compile_kernels
+from knitcore.yarn.solve.splines import RelaxedRepeat, compile_kernels, relaxed_repeat
 from knitcore.yarn.solve.topology import clearance_at
 
 MAX_STITCHES = 36
@@ -68,6 +70,16 @@ class StitchHistory(Choice):
     """Pulled equally both ways, as on a blocking board, and let go, with friction."""
 
 
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class StitchRepeat(RelaxedRepeat):
+    """A repeat of any stitches on splines."""
+
+    @property
+    def energy(self) -> StitchEnergy:
+        """The energy whose minimum this is, without pulls."""
+        return StitchEnergy(self.cell, self.yarn, self.loop_lengths_mm, self.convention)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class RelaxedStitches(Result):
     """A relaxed repeat of any stitches.
@@ -93,6 +105,7 @@ class RelaxedStitches(Result):
     seconds : CPU time, s.
     converged : whether the solver reached its tolerance.
     centre_lines : (rows, points, 3) of the yarn, mm, once across the repeat, bottom row first.
+    state : the yarn at rest with the friction that holds it, from which it can be pulled on.
     notes : remarks for the user.
     """
 
@@ -115,9 +128,11 @@ class RelaxedStitches(Result):
     seconds: float
     converged: bool
     centre_lines: Array
+    state: RubbedCell
     notes: tuple[str, ...] = (CAUTION,)
 
     also_listed: ClassVar = ("pattern",)
+    not_listed: ClassVar = ("state",)
 
     @property
     def pattern(self) -> str:
@@ -193,19 +208,25 @@ def relax_stitches(
     compile_kernels()
     clock = time.process_time()
     graph = whole.graph
-    drawn = room_for_yarn(graph, yarn, loop_length_mm)
+    drawn = _knotted(room_for_yarn(graph, yarn, loop_length_mm))
     lengths = loop_length_mm * (per_act or YarnPerAct()).of_rows(graph)
     take_down = TakeDown(yarn, Convention.parse(convention), lengths, cancelled)
     taken, minimum = take_down(drawn)
     energy, state = _coarser(taken, minimum)
-    energy, minimum = _at_rest(energy, state, minimum.tension, kind, friction, cancelled)
+    energy, minimum, rubbing = _at_rest(energy, state, minimum.tension, kind, friction, cancelled)
     cell, state = energy.cell, minimum.state
-    if not same_clasps(_code(drawn.cell, drawn.state), _code(cell, state)):
+    if not cell_is_knitted(cell, state):
         raise UnravelledError("The stitches come undone on the way to rest.")
     lines = centre_lines(cell, state, cell.rows, cell.wales)
     course, wale = float(state[-2]), float(state[-1])
     open_places = holes(lines, cell.wales * course, cell.rows * wale, yarn.radius_mm)
     folded = is_folded(lines, cell.wales, course, wale)
+    notes = (FOLDED, CAUTION) if folded else (CAUTION,)
+    seconds = time.process_time() - clock
+    plain = relaxed_repeat(
+        StitchChart(cell.purl), energy, Branch.FREE, minimum, seconds=seconds,
+        evaluations=minimum.evaluations, notes=notes,
+    )  # fmt: skip
     return RelaxedStitches(
         chart=whole,
         yarn=yarn,
@@ -214,7 +235,7 @@ def relax_stitches(
         friction=None if kind is StitchHistory.AGITATED else friction,
         cell_course_mm=course,
         cell_wale_mm=wale,
-        thickness_mm=float(np.ptp(lines[..., 2])) + 2.0 * yarn.radius_mm,
+        thickness_mm=plain.thickness_mm,
         folded=folded,
         hole_share=open_places.share,
         eyelet_mm2=open_places.eyelet_mm2(_yarn_overs(graph)),
@@ -223,11 +244,20 @@ def relax_stitches(
         crossings=drawn.exact,
         layered=sum(drawn.crossings.values()) - drawn.exact,
         min_distance_mm=minimum.min_distance_mm,
-        seconds=time.process_time() - clock,
+        seconds=seconds,
         converged=minimum.converged,
         centre_lines=lines,
-        notes=(FOLDED, CAUTION) if folded else (CAUTION,),
+        state=RubbedCell(StitchRepeat(**vars(plain)), rubbing, 0.0),
+        notes=notes,
     )
+
+
+def _knotted(drawn: DrawnYarn) -> DrawnYarn:
+    """Keep in its cell how a first shape is knotted."""
+    cell, state = drawn.cell, drawn.state
+    lines = centre_lines(cell, state, cell.rows, cell.wales)
+    code = clasp_code(lines, cell.wales * float(state[-2]), cell.rows * float(state[-1]))
+    return replace(drawn, cell=replace(cell, code=tuple(code.tolist())))
 
 
 def _yarn_overs(graph: StitchGraph) -> int:
@@ -239,8 +269,8 @@ def _yarn_overs(graph: StitchGraph) -> int:
 def _at_rest(
     energy: StitchEnergy, state: Array, tension: Array, history: StitchHistory, friction: float,
     cancelled: Cancelled | None,
-) -> tuple[StitchEnergy, Minimum]:  # fmt: skip
-    """The state after a history, from that under the take-down."""
+) -> tuple[StitchEnergy, Minimum, Rubbing]:  # fmt: skip
+    """The state after a history, from that under the take-down, and the friction it holds."""
     stitches, pull = energy.cell.stitches, (0.0, 0.0)
     if history is StitchHistory.KNITTED:
         pull = pulls_n(stitches, energy.mean_loop_mm, TAKE_DOWN_N_PER_MM)
@@ -250,16 +280,16 @@ def _at_rest(
     energy = replace(energy, pull_n=pull, spacing_per_bending=SPACING_PER_BENDING)
     options = _SETTLED if history is StitchHistory.AGITATED else _PULLED
     minimum = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
-    if history is StitchHistory.AGITATED:
-        return energy, minimum
     rubbing = Rubbing(np.zeros(0, np.int64), np.zeros((0, 2)))
+    if history is StitchHistory.AGITATED:
+        return energy, minimum, rubbing
     for left in range(_RELEASE - 1, -1, -1):
         energy = replace(energy, pull_n=(pull[0] * left / _RELEASE, pull[1] * left / _RELEASE))
         minimum, rubbing, _ = rub(
             energy, minimum.state, minimum.tension, rubbing, friction, options=_RUBBED,
             check=_check_apart, cancelled=cancelled,
         )  # fmt: skip
-    return energy, minimum
+    return energy, minimum, rubbing
 
 
 def _check_apart(energy: CellEnergy, minimum: Minimum) -> None:
@@ -288,8 +318,3 @@ def _compared(cell: YarnCell, state: Array) -> Array:
     samples = _COMPARED // grid.controls
     dense = replace(cell, grid=SplineGrid(grid.controls, samples))
     return centre_lines(dense, state, cell.rows, cell.wales)
-
-
-def _code(cell: YarnCell, state: Array) -> Array:
-    lines = centre_lines(cell, state, cell.rows, cell.wales)
-    return clasp_code(lines, cell.wales * float(state[-2]), cell.rows * float(state[-1]))

@@ -9,8 +9,7 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_range
 from knitcore.chart.stitch_graph import StitchGraph
-from knitcore.chart.stitch_kinds import YarnAct
-from knitcore.materials.yarn_per_stitch import YARN_OF_FLOAT, YARN_OF_TUCK
+from knitcore.materials.yarn_per_stitch import YARN_OF_FLOAT, YARN_OF_TUCK, yarn_of_acts
 from knitcore.yarn.kernels.structures import Ints, Pairs
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
 
@@ -39,15 +38,7 @@ class YarnPerAct:
 
     def of_rows(self, graph: StitchGraph) -> Array:
         """(rows,) mean over the sites of each row."""
-        sources = np.diff(graph.first, axis=1)
-        passing = np.zeros(graph.act.shape, dtype=bool)
-        row, column = np.nonzero(sources)
-        passing[row, column] = graph.layer[graph.first[row, column]] != 0
-        over = np.where(sources > 0, self.tuck, self.yarn_over)
-        through = np.where(passing, self.crossing, 1.0)
-        parts = np.choose(graph.act, [through, over, self.slip])
-        assert list(YarnAct) == [0, 1, 2]  # noqa: S101 - the order of the choices
-        return np.asarray(parts.mean(axis=1))
+        return np.asarray(yarn_of_acts(graph, **vars(self)).mean(axis=1))
 
 
 @dataclass(frozen=True, eq=False)

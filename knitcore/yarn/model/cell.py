@@ -36,6 +36,7 @@ class YarnCell:
     axis : place of the imposed wale axis in half stitches (1 = middle of the first stitch), None
         if there is none.
     grid : resolution of the curves.
+    code : how its yarn is knotted, if it has other stitches than knits and purls.
     """
 
     purl: NDArray[np.bool_]
@@ -43,6 +44,7 @@ class YarnCell:
     mirror_wale: bool
     axis: int | None
     grid: SplineGrid
+    code: tuple[float, ...] | None = None
 
     @property
     def rows(self) -> int:

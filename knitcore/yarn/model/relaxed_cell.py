@@ -98,6 +98,11 @@ class RelaxedCell(Result):
         """Size of one stitch along a direction, mm."""
         return direction.of(self.cell_course_mm, self.cell_wale_mm)
 
+    @property
+    def thickness_mm(self) -> float:
+        """From the lowest to the highest yarn, mm."""
+        return float(np.ptp(self.centre_lines[..., 2])) + 2.0 * self.yarn.radius_mm
+
     def _repr_html_(self) -> str:
         lines = self.tiled_lines()
         diameter = 2 * self.yarn.core_radius_mm

@@ -93,8 +93,11 @@ def cell_is_knitted(cell: YarnCell, state: Array) -> bool:
     """Tell whether a state of a cell is knotted as the cell's stitches say."""
     rows = cell.rows * (2 if cell.mirror_wale else 1)
     wales = cell.wales * (2 if cell.mirror_course else 1)
-    purl = [[cell.purl_at(row, wale) for wale in range(wales)] for row in range(rows)]
     lines = centre_lines(cell, state, rows, wales)
+    if cell.code is not None:
+        code = clasp_code(lines, wales * float(state[-2]), rows * float(state[-1]))
+        return same_clasps(code, np.array(cell.code))
+    purl = [[cell.purl_at(row, wale) for wale in range(wales)] for row in range(rows)]
     return is_knitted(StitchChart(np.array(purl)), lines, float(state[-2]), float(state[-1]))
 
 

@@ -25,7 +25,7 @@ from knitcore.yarn.kernels.structures import Pairs
 from knitcore.yarn.model.energy import CellEnergy
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
 from knitcore.yarn.solve.search import check_reached
-from knitcore.yarn.solve.splines import RelaxedRepeat, check_unheld, relaxed_repeat
+from knitcore.yarn.solve.splines import RelaxedRepeat, check_unheld
 
 MAX_COEFFICIENT = 2.0
 MAX_STITCHES = 36
@@ -131,10 +131,7 @@ def rubbed(
         fixed=fixed, target=target, cancelled=cancelled,
         options=Options(tolerance=1e-8 if small else 1e-6, iterations=80),
     )  # fmt: skip
-    shown = relaxed_repeat(
-        cell.chart, energy, cell.branch, minimum,
-        seconds=time.process_time() - began, evaluations=minimum.evaluations,
-    )  # fmt: skip
+    shown = cell.at(energy, minimum, time.process_time() - began)
     return RubbedCell(shown, rubbing, last.lost_n_mm + lost / cell.cell.stitches)
 
 

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -117,6 +118,14 @@ class RelaxedRepeat(RelaxedCell):
         return CellEnergy(
             self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat, self.slides
         )
+
+    def at(self, energy: CellEnergy, minimum: Minimum, seconds: float) -> Self:
+        """Return the same repeat in another state."""
+        other = relaxed_repeat(
+            self.chart, energy, self.branch, minimum, seconds=seconds,
+            evaluations=minimum.evaluations,
+        )  # fmt: skip
+        return type(self)(**vars(other))
 
 
 def relax_splines(
@@ -233,10 +242,7 @@ def refined(relaxed: RelaxedRepeat, grid: SplineGrid) -> RelaxedRepeat:
     became = outcome(energy, minimum)
     if became != RELAXED:
         raise ConvergenceError(f"On a finer grid it does not settle: {became}.")
-    return relaxed_repeat(
-        relaxed.chart, energy, relaxed.branch, minimum, seconds=time.process_time() - clock,
-        evaluations=minimum.evaluations, notes=relaxed.notes,
-    )  # fmt: skip
+    return replace(relaxed.at(energy, minimum, time.process_time() - clock), notes=relaxed.notes)
 
 
 def check_unheld(relaxed: RelaxedRepeat) -> None:

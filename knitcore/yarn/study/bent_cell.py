@@ -152,7 +152,7 @@ def _by_newton(relaxed: RelaxedRepeat) -> BentCell | None:
         finer = plain_cell(relaxed.chart, GRID)
         state, cell = refined_state(cell, state, finer), finer
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
-    energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
+    energy = replace(relaxed.energy, cell=cell, loop_length_mm=lengths)
     tension = np.resize(relaxed.tension_n, cell.rows)
     radius = relaxed.yarn.radius_mm
     for _ in range(_STEPS):

@@ -32,7 +32,7 @@ from knitcore.yarn.model.slides import slides_at
 from knitcore.yarn.paper.stretch import PublishedStretch
 from knitcore.yarn.solve.newton import COURSE, WALE, Options, minimise
 from knitcore.yarn.solve.search import SAME_ENERGY, check_reached
-from knitcore.yarn.solve.splines import MAX_STITCHES_RULED, RelaxedRepeat, relaxed_repeat
+from knitcore.yarn.solve.splines import MAX_STITCHES_RULED, RelaxedRepeat
 from knitcore.yarn.solve.topology import clearance_at
 
 DEFAULT_POINTS = 25
@@ -140,10 +140,7 @@ class SplineStretch:
         check_reached(last.energy, minimum)
         if abs(minimum.state[self.along.axis - 2] - size_mm) > 1e-9:
             raise ConvergenceError("the yarn locks before it gets there.")
-        return relaxed_repeat(
-            last.chart, last.energy, last.branch, minimum, seconds=0.0,
-            evaluations=minimum.evaluations,
-        )  # fmt: skip
+        return last.at(last.energy, minimum, seconds=0.0)
 
 
 def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:

@@ -275,8 +275,8 @@ def test_a_request_passes_its_fields_to_the_library() -> None:
 
 
 YARN_ALONE = {
-    "characterise", "dial", "import", "knit_along", "material", "pull", "relax", "relax_stitches",
-    "rs", "sweep", "tube", "uses", "whole",
+    "characterise", "dial", "import", "knit_along", "material", "pull", "relax", "rs",
+    "sweep", "tube", "uses", "whole",
 }  # fmt: skip
 """They compute from the yarn, the size of its stitches or its document, or, as `pull`, change the
 laws; the address of `material` names laws."""

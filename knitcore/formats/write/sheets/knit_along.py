@@ -5,11 +5,12 @@ By hand the rows are those of the written pattern; on a home machine those of it
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from knitcore.base.arrays import runs
 from knitcore.chart.row_sides import Construction, Side
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_kinds import STITCHES
 from knitcore.chart.symbol_chart import SymbolChart, knits_and_purls
 from knitcore.formats.write.written_pattern import piece_row_words, written_sections
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, check_row
@@ -35,6 +36,8 @@ class AlongRow:
         up or on the ribber; K for all others.
     first : place of the leftmost stitch, from that of the widest row.
     yarns : stitches and number of the yarn of each stretch from the left.
+    codes : of a chart with other stitches than knits and purls all of them as they are worked, from
+        the knitter's left.
     """
 
     number: int
@@ -44,6 +47,7 @@ class AlongRow:
     stitches: str
     first: int
     yarns: tuple[tuple[int, int], ...]
+    codes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,13 @@ def knit_along(
     rows = tuple(
         _hand_row(number, row, piece_row_words(full, several=several), first, in_round=in_round)
         for number, (row, full, first) in enumerate(zip(worked, said, left, strict=True), start=1)
-    )[from_row - 1 :]
+    )
+    if isinstance(every, SymbolChart):
+        rows = tuple(
+            replace(row, codes=tuple(STITCHES[place].code for place in reversed(full.stitches)))
+            for row, full in zip(rows, said, strict=True)
+        )
+    rows = rows[from_row - 1 :]
     notes = () if piece.yarns == (MAIN_YARN,) else tuple(opening[1:])
     return KnitAlong(
         tuple(opening[:1]), rows, ("Bind off.",), notes, in_round, repeat, "purls", piece.yarns

@@ -7,7 +7,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from knitcore.materials import material, save_material_file
-from tests.app.command_line import refused, run
+from tests.app.command_line import printed, refused, run
 from tests.app.rest import post, refusal
 
 FIELDS = {
@@ -140,7 +140,21 @@ def test_the_yarn_of_a_stitch_is_given_if_it_is_known(client: TestClient) -> Non
     assert low < knit["yarn_per_stitch_mm"] < high
     assert slipped["yarn_per_stitch_mm"] < knit["yarn_per_stitch_mm"]
     assert knit["other_stitches"] is None
-    assert slipped["other_stitches"]["longest_float_mm"] > slipped["relaxed_course_mm"]
+    others = slipped["other_stitches"]
+    assert others["longest_float_mm"] == pytest.approx(2 * slipped["relaxed_course_mm"])
+    assert others["longest_float_interval_mm"] == pytest.approx(
+        [2 * end for end in slipped["relaxed_course_interval_mm"]]
+    )
+    assert others["yarn_m"] == pytest.approx(4 * slipped["yarn_per_stitch_mm"] / 1000)
+    low, high = others["yarn_interval_m"]
+    assert low < others["yarn_m"] < high
+
+
+def test_yarn_and_floats_of_other_stitches_are_printed() -> None:
+    shown = printed("predict", "VK;KK", "--material", "acrylic").output
+    assert "floats up to" in shown
+    assert "yarn of all" in shown
+    assert "floats" not in printed("predict", "KK;O/", "--material", "acrylic").output
 
 
 def test_what_would_narrow_an_interval_does_so_over_rest(client: TestClient) -> None:

@@ -65,7 +65,11 @@ def test_cables_have_the_table_of_passes_and_what_was_done_for_the_yarn(client: 
     assert run("program", CABLES, "--machine", "kniterate", "--material", "glove-wool") == report
     words = refused("program", CABLES, "--machine", "brother")
     assert "plans that hold knits and purls only" in words
-    assert "begins at row 1" in refused("program", CABLES, "--from-row", 2)
+    rest = run(
+        "program", CABLES, "--machine", "kniterate", "--material", "glove-wool", "--from-row", 4
+    )
+    assert {kind["rack"] for kind in rest["kinds_of_transfer"]} == {0}
+    assert rest["minutes"] < report["minutes"]
 
 
 def test_loops_too_short_for_their_transfers_are_refused_with_what_helps() -> None:

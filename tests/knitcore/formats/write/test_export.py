@@ -46,6 +46,7 @@ from knitcore.formats.write.extensibility_drawing import region_fields
 from knitcore.formats.write.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
+from knitcore.materials.yarn_per_stitch import mean_yarn
 from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.prediction.prediction import Source
 from tests.knitcore.charts import stitch_charts
@@ -421,6 +422,17 @@ def test_a_program_begins_at_any_row_after_a_jam(machine: str) -> None:
         export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(layout=layout, from_row=5))
 
 
+def test_a_program_of_other_stitches_begins_where_needles_hold_one_loop() -> None:
+    chart = SymbolChart.parse("KKKKKK;KO/\\OK;KVKKTK;KKKKKK;[2/2R]KK")
+    file = export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(from_row=3))
+    upper = SymbolChart.parse("KKKKKK;KO/\\OK;KVKKTK")
+    assert file.content == export_chart(upper, ExportKind.KNITOUT, ACRYLIC).content
+    assert any("hold row 2 on waste yarn" in note for note in file.notes)
+    for row, problem in ((4, "row 3 tucks or slips.* Begin at row 3"), (6, "no row 6")):
+        with pytest.raises(InputError, match=problem):
+            export_chart(chart, ExportKind.KNITOUT, ACRYLIC, ExportOptions(from_row=row))
+
+
 @pytest.mark.parametrize("kind", ["hand-plan-text", "ayab", "punch-card-text"])
 def test_files_for_home_machines_follow_the_machine_of_the_design(kind: str) -> None:
     chart = StitchChart.of_fabric("rib", rows=4, columns=8)
@@ -481,6 +493,19 @@ def test_a_pattern_and_a_report_have_the_size_words_and_symbols_of_all_stitches(
     assert report.SOURCES.keys() == set(Source)
     gauged = ExportOptions(gauge=RelaxedSize(5.0, 4.0))
     assert "6.0 × 3.2 cm at rest" in text(gauged)
+
+
+def test_a_pattern_counts_the_yarn_of_every_stitch_as_predict_does() -> None:
+    slipped = SymbolChart.parse("VK;KK").tile(5, 6)
+    plain = SymbolChart.parse("KK;KK").tile(5, 6)
+    metres = []
+    for chart in (slipped, plain):
+        drawing = export_chart(chart, ExportKind.PATTERN_SVG, ACRYLIC).content.decode()
+        text = re.sub(r"(\s|<[^>]*>)+", " ", drawing)
+        metres.append(float(re.findall(r"In all ([\d.]+) m", text)[0]))
+        mean, _ = mean_yarn(chart, ACRYLIC)
+        assert metres[-1] == pytest.approx(mean * chart.cells.size / 1000, rel=5e-3)
+    assert metres[0] < 0.85 * metres[1]
 
 
 def test_a_solid_of_other_stitches_has_a_closed_tube_for_every_row() -> None:

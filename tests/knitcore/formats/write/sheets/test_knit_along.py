@@ -49,6 +49,12 @@ def test_rows_of_any_stitches_have_their_words(construction: Construction) -> No
         assert row.words[0].lower() in line.lower()
     plain = knit_along(chart.plain, construction)
     assert [row.stitches for row in along.rows] == [row.stitches for row in plain.rows]
+    assert not plain.rows[0].codes
+    assert along.rows[4].codes == ("P", "[2/2R]", "P")
+    lace = along.rows[2].codes
+    assert lace == ("K", "O", "/", "\\", "O", "K")
+    tucked = ("t", "P", "K", "P", "P", "P")  # TKPKKK as the back shows it
+    assert along.rows[1].codes == (along.rows[1].codes if along.round else tucked[::-1])
     with pytest.raises(InputError, match="yarn over"):
         knit_along(chart, machine=profile("brother"))
 
