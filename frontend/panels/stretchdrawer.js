@@ -14,7 +14,7 @@ import { h } from "../elements/dom.js";
 import { REST } from "../state/studio.js";
 import { plainWords } from "../services/stitches.js";
 import { icon } from "../elements/icons.js";
-import { iconButton } from "../widgets/buttons.js";
+import { iconButton, verb } from "../widgets/buttons.js";
 import { numberField, segmented, selectField } from "../widgets/fields.js";
 
 /** @typedef {"%" | "N"} Unit of a pull */
@@ -340,6 +340,6 @@ function refused({ type, title, detail, remedy, field, most }, pull) {
     {},
     h("strong", {}, unit === "%" ? "Too far" : "Too hard"),
     `: the first stitches run out of stretch before that. Use at most ${amount} ${unit}. `,
-    h("button", { class: "link", id: "stretch-most", onclick: () => pull(amount, unit) }, `Pull by ${amount} ${unit}`),
+    verb(`Pull by ${amount} ${unit}`, () => pull(amount, unit), { id: "stretch-most" }),
   );
 }
