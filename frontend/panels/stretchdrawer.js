@@ -226,24 +226,19 @@ export function stretchdrawer(host, studio, stretcher) {
       const rest = ` ${[outcome, ...(value.messages ?? [])].join(" ")}`;
       const warned = value.first_taut && h("span", { class: "warned" }, icon("warning"), lockUp);
       note.append(h("span", {}, warned ?? lockUp, rest));
-    } else if (tooLarge()) note.append(icon("info"), tooLarge());
-    else note.append("Pull the chart along its rows or columns and see where it gives.");
+    } else note.append("Pull the chart along its rows or columns and see where it gives.");
     const plain = plainWords(studio, "The test");
     if (plain && !problem) note.append(h("span", {}, ` ${plain}`));
-    run.disabled = !busy && tooLarge() !== "";
     host.classList.toggle("busy", busy);
     if (busy) folded(false);
   };
   const waiting = () => stretcher.progress.value === null;
-  const tooLarge = () => studio.tooLarge("stretch", "a stretch test");
-  studio.document.onChange(({ resized }) => resized && show());
   let plainSaid = false;
   studio.document.onSettle(() => {
     const others = studio.document.others.size > 0;
     if (others !== plainSaid) show();
     plainSaid = others;
   });
-  studio.largest.listen(show);
   studio.stretch.watch(show);
   studio.step.listen(showStep);
   stretcher.progress.watch((share) => {
