@@ -46,12 +46,13 @@ MIXED = (
     "laws of a test can only stiffen."
 )
 """Said of tests of charts of several fabrics."""
-IN_BLOCKS = (
-    "The chart is large, so blocks of {0} × {0} stitches were taken for one. In mixed charts of "
-    "120 × 120 stitches this changed forces by up to {1:.0%} and the waist by up to {2:.1%} of the "
-    "width; the intervals allow for it."
+IN_BLOCKS = "The chart is large: {0} × {0} stitches count as one."
+"""Said of tests in blocks of so many stitches a side."""
+BLURRED = (
+    f"That may change forces by {100 * MAX_DIFFERENCE['force']:.0f} % and the waist by "
+    f"{100 * MAX_DIFFERENCE['waist']:.1f} % of the width, which the intervals allow for."
 )
-"""Said of tests in blocks: side of a block, and what that changed."""
+"""Said of those of several fabrics."""
 MAX_VALUES = 60 * MAX_STITCHES
 """Largest number of stitches, or blocks, times steps over REST: the answer has seven numbers for
 each."""
@@ -291,7 +292,9 @@ def _messages(test: StripTest, *, mixed: bool) -> list[str]:
     if mixed and full:
         messages.append(MIXED)
     if (block := test.sheet.block) > 1:
-        messages.append(IN_BLOCKS.format(block, *MAX_DIFFERENCE.values()))
+        messages.append(IN_BLOCKS.format(block))
+        if mixed:
+            messages.append(BLURRED)
     return messages
 
 
