@@ -22,10 +22,9 @@ const NARROWED = "rgb(196 30 20 / 0.95)";
  */
 export function drawCrosses(context, viewport, studio, box) {
   const fields = studio.currentStretch()?.stitch_fields;
-  const step = studio.step.value;
-  const course = fields?.strain_course[step];
-  const wale = fields?.strain_wale[step];
-  if (!fields || !course || !wale) return;
+  const strains = studio.strains();
+  if (!fields || !strains) return;
+  const { course, wale } = strains;
   const { grid, shaped, outline } = studio.document;
   const { cellWidth: w, cellHeight: h } = viewport;
   const size = sideOfCrossed(viewport);

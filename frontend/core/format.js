@@ -45,6 +45,9 @@ export function percentRange(ends, decimals = 0) {
   return ends.map((end) => (end === undefined ? "" : percent(end, decimals).slice(0, -2))).join(upTo(ends));
 }
 
+/** A sentence in which no line ends between the ends of an interval, or before their "%". @param {string} sentence */
+export const unbroken = (sentence) => sentence.replace(/ (?=– |%)|(?<=–) /g, "\u00a0");
+
 /** @param {number} share @param {number} [decimals] */
 export function percent(share, decimals = 0) {
   return `${(100 * share).toFixed(decimals).replace("-", "−")} %`;

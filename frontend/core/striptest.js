@@ -23,6 +23,29 @@ export function lockUpInWords({ strain, force_n, force_interval_n, first_taut: t
   return `The tightest stitches run out of stretch at ${percent(taut.strain)} (${figure(taut.force_n)} N${known.wide ? `, which may be ${known.text}` : ""}).`;
 }
 
+/** Values of stitches by those of the blocks that were taken for one. @type {WeakMap<number[], number[]>} */
+const AT_STITCHES = new WeakMap();
+
+/**
+ * Values of all stitches, row by row from the bottom, from those of a test's stitches or blocks.
+ *
+ * @param {Pick<StretchResult, "rows" | "columns" | "block">} test
+ * @param {number[]} values
+ */
+export function atStitches({ rows, columns, block }, values) {
+  if (!(block > 1)) return values; // a test that the service has kept since before there were blocks has none
+  let all = AT_STITCHES.get(values);
+  if (!all) {
+    const [up, across] = [rows, columns].map((count) => Math.ceil(count / block));
+    all = Array.from({ length: rows * columns }, (_, i) => {
+      const [row, column] = [Math.floor(i / columns), i % columns];
+      return values[Math.floor((row * up) / rows) * across + Math.floor((column * across) / columns)];
+    });
+    AT_STITCHES.set(values, all);
+  }
+  return all;
+}
+
 /**
  * All steps with their 90 % intervals, as CSV for a spreadsheet.
  *

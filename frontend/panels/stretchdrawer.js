@@ -14,7 +14,7 @@ import { h } from "../elements/dom.js";
 import { REST } from "../state/studio.js";
 import { plainWords } from "../services/stitches.js";
 import { icon } from "../elements/icons.js";
-import { iconButton } from "../widgets/buttons.js";
+import { iconButton, verb } from "../widgets/buttons.js";
 import { numberField, segmented, selectField } from "../widgets/fields.js";
 
 /** @typedef {"%" | "N"} Unit of a pull */
@@ -226,24 +226,19 @@ export function stretchdrawer(host, studio, stretcher) {
       const rest = ` ${[outcome, ...(value.messages ?? [])].join(" ")}`;
       const warned = value.first_taut && h("span", { class: "warned" }, icon("warning"), lockUp);
       note.append(h("span", {}, warned ?? lockUp, rest));
-    } else if (tooLarge()) note.append(icon("info"), tooLarge());
-    else note.append("Pull the chart along its rows or columns and see where it gives.");
+    } else note.append("Pull the chart along its rows or columns and see where it gives.");
     const plain = plainWords(studio, "The test");
     if (plain && !problem) note.append(h("span", {}, ` ${plain}`));
-    run.disabled = !busy && tooLarge() !== "";
     host.classList.toggle("busy", busy);
     if (busy) folded(false);
   };
   const waiting = () => stretcher.progress.value === null;
-  const tooLarge = () => studio.tooLarge("stretch", "a stretch test");
-  studio.document.onChange(({ resized }) => resized && show());
   let plainSaid = false;
   studio.document.onSettle(() => {
     const others = studio.document.others.size > 0;
     if (others !== plainSaid) show();
     plainSaid = others;
   });
-  studio.largest.listen(show);
   studio.stretch.watch(show);
   studio.step.listen(showStep);
   stretcher.progress.watch((share) => {
@@ -340,6 +335,6 @@ function refused({ type, title, detail, remedy, field, most }, pull) {
     {},
     h("strong", {}, unit === "%" ? "Too far" : "Too hard"),
     `: the first stitches run out of stretch before that. Use at most ${amount} ${unit}. `,
-    h("button", { class: "link", id: "stretch-most", onclick: () => pull(amount, unit) }, `Pull by ${amount} ${unit}`),
+    verb(`Pull by ${amount} ${unit}`, () => pull(amount, unit), { id: "stretch-most" }),
   );
 }

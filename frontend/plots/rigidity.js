@@ -60,7 +60,7 @@ export function rigidityPlot(host, studio) {
     }
     add(
       "text",
-      { x: (PAD.left + width - PAD.right) / 2, y: height - 6, class: "axis middle" },
+      { x: width - PAD.right, y: height - 6, class: "axis end" }, // a narrow plot has room before its axis
       "Stiffness along rows (N/mm)",
     );
     add(

@@ -19,6 +19,7 @@
  */
 
 import { paced } from "../core/paced.js";
+import { atStitches } from "../core/striptest.js";
 import { Grid } from "../grid/grid.js";
 import { imbalances } from "../design/balance.js";
 import { PURL } from "../design/ink.js";
@@ -205,7 +206,7 @@ export class Studio {
    * @returns {number[] | null}
    */
   field(name) {
-    return this.#steps(name)?.[this.step.value] ?? null;
+    return this.#atStitches(this.#steps(name));
   }
 
   /** Smallest and largest strain of a stitch along the pull in the whole test; rest is among them. */
@@ -233,11 +234,24 @@ export class Studio {
     return this.stretchDirection() === "course" ? fields?.strain_course : fields?.strain_wale;
   }
 
-  /** @param {"strain" | "utilisation"} name of values at the stitches; low and high ends by step */
-  interval(name) {
+  /** Low and high ends of a stitch's value at the step on show. @param {"strain" | "utilisation"} name @param {number} i */
+  interval(name, i) {
     const fields = this.currentStretch()?.stitch_fields;
-    if (name === "utilisation") return fields?.utilisation_interval;
-    return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
+    const along = this.stretchDirection() === "course" ? fields?.strain_course_interval : fields?.strain_wale_interval;
+    return (name === "utilisation" ? fields?.utilisation_interval : along)?.map((end) => this.#atStitches(end)?.[i]);
+  }
+
+  /** Strains of all stitches at the step on show, along rows and along columns; null without a test. */
+  strains() {
+    const fields = this.currentStretch()?.stitch_fields;
+    const [course, wale] = [fields?.strain_course, fields?.strain_wale].map((steps) => this.#atStitches(steps));
+    return course && wale ? { course, wale } : null;
+  }
+
+  /** @param {number[][] | undefined} steps @returns {number[] | null} */
+  #atStitches(steps) {
+    const [test, values] = [this.currentStretch(), steps?.[this.step.value]];
+    return test && values ? atStitches(test, values) : null;
   }
 
   /** Paint with an ink; with the pencil if the tool does not paint. @param {Ink} ink */

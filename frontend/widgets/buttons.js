@@ -35,6 +35,22 @@ export function textButton(sign, label, perform, more = {}) {
 }
 
 /**
+ * A verb within a sentence, which breaks with its line: what a browser takes for a button stands in a box of its own.
+ *
+ * @param {string} words
+ * @param {() => unknown} perform
+ * @param {Record<string, unknown>} [more] properties
+ */
+export function verb(words, perform, more = {}) {
+  const onkeydown = (/** @type {KeyboardEvent} */ event) => {
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    perform();
+  };
+  return h("span", { class: "link", role: "button", tabIndex: 0, onclick: perform, onkeydown, ...more }, words);
+}
+
+/**
  * A button for an action, with its key in its title.
  *
  * @param {Action} action

@@ -198,7 +198,9 @@ def is_large(repeat: StitchChart) -> bool:
     return max(repeat.rows, repeat.columns) > SIDE
 
 
-def in_patches(repeat: StitchChart, material: Material, size: RelaxedSize | None = None) -> Patches:
+def in_patches(
+    repeat: StitchChart, material: Material, size: RelaxedSize | None = None, most: int = MAX_SIDE
+) -> Patches:
     """Predict a large repeat patch by patch.
 
     Parameters
@@ -206,13 +208,14 @@ def in_patches(repeat: StitchChart, material: Material, size: RelaxedSize | None
     repeat : the repeat, or a whole piece.
     material : a yarn at one setting.
     size : relaxed size of the whole chart's mean stitch, if known.
+    most : patches along each side, at most.
 
     Raises
     ------
     InputError
         If the repeat needs a pure fabric that the material lacks.
     """
-    rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
+    rows, columns = _cuts(repeat.rows, most), _cuts(repeat.columns, most)
     cells = product(pairwise(rows.tolist()), pairwise(columns.tolist()))
     parts = [repeat.region(slice(*up), slice(*along)) for up, along in cells]
     whole = densities(repeat)
@@ -249,7 +252,7 @@ def in_patches(repeat: StitchChart, material: Material, size: RelaxedSize | None
     )
 
 
-def _cuts(stitches: int) -> Indices:
+def _cuts(stitches: int, most: int = MAX_SIDE) -> Indices:
     """Where patches begin and end: the middle and steps from there, as far as there are stitches.
 
     Examples
@@ -259,8 +262,8 @@ def _cuts(stitches: int) -> Indices:
     """
     if stitches <= SIDE:
         return np.array([0, stitches])
-    step = max(SIDE, stitches / MAX_SIDE)
-    steps = step * np.arange(1, MAX_SIDE)
+    step = max(SIDE, stitches / most)
+    steps = step * np.arange(1, most)
     inside = stitches / 2 + np.concatenate([-steps, [0.0], steps])
     return np.unique(np.clip(np.append(inside.round(), [0, stitches]), 0, stitches)).astype(np.intp)
 

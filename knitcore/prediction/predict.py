@@ -28,7 +28,7 @@ from knitcore.materials import Material, as_material
 from knitcore.prediction.densities import densities
 from knitcore.prediction.learned import SweptChart, packaged_model
 from knitcore.prediction.mixed import predict_mixed
-from knitcore.prediction.patches import Patches, in_patches, is_large
+from knitcore.prediction.patches import MAX_SIDE, Patches, in_patches, is_large
 from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.pure import predict_pure
 from knitcore.prediction.size import RelaxedSize, check_size
@@ -79,12 +79,14 @@ def patches_of(
     material: Material,
     size: RelaxedSize | None = None,
     swept: SweptChart | None = None,
+    most: int = MAX_SIDE,
 ) -> Patches:
     """Divide a chart into the patches that :func:`predict` puts together; most are one patch.
 
     Parameters
     ----------
     chart, material, size, swept : as for :func:`predict`.
+    most : patches along each side, at most.
 
     Raises
     ------
@@ -103,7 +105,7 @@ def patches_of(
     if swept is None and material.is_simulated:
         swept = packaged_model().sweep_of(repeat, material)
     if swept is None and is_large(repeat):
-        return in_patches(repeat, material, size)
+        return in_patches(repeat, material, size, most)
     composition = densities(repeat)
     learned = packaged_model().response(composition, material, size, swept)
     mixed = predict_mixed(repeat, composition, material, learned, size, swept)

@@ -44,7 +44,7 @@ from knitcore.materials import FabricRecord, Material
 from knitcore.materials.law_uncertainty import Z_SCORE
 from knitcore.prediction.mixture import law_strains
 from knitcore.prediction.neighbourhood import sizes_and_folds
-from knitcore.prediction.patches import Patches, shares_of_patches
+from knitcore.prediction.patches import MAX_SIDE, Patches, shares_of_patches
 from knitcore.prediction.predict import patches_of
 from knitcore.prediction.prediction import Prediction
 from knitcore.prediction.size import RelaxedSize
@@ -91,7 +91,12 @@ class QuarterLaws:
 
 
 def quarter_laws(
-    chart: StitchChart, material: Material, size: RelaxedSize | None = None, *, even: bool = False
+    chart: StitchChart,
+    material: Material,
+    size: RelaxedSize | None = None,
+    *,
+    even: bool = False,
+    most: int = MAX_SIDE,
 ) -> QuarterLaws:
     """Compute the laws and sizes of the quarter cells of a piece.
 
@@ -101,6 +106,7 @@ def quarter_laws(
     material : a yarn at one setting.
     size : relaxed size of the chart's mean stitch, if known.
     even : give all quarters of a mixed patch one law, that of the patch.
+    most : patches along each side, at most.
 
     Raises
     ------
@@ -110,7 +116,7 @@ def quarter_laws(
     pure = pure_fabric(chart) is not None
     if pure and size is None:
         return flat_laws(chart, material)
-    patches = patches_of(chart, material, size)
+    patches = patches_of(chart, material, size, most=most)
     phases = quarter_phases(chart)
     scale = _scale(chart, phases, patches, material)
     if pure:

@@ -264,8 +264,7 @@ def test_what_a_chart_is_too_large_for_is_said_before_the_button(
     visitor: Page, service: str
 ) -> None:
     page = open_design(visitor, service, chart="\n".join(["K" * 250] * 200))
-    expect(page.locator(".stretch-note")).to_contain_text("up to 40,000 stitches")
-    expect(page.locator("#stretch-run")).to_be_disabled()
+    expect(page.locator("#stretch-run")).to_be_enabled()
     page.keyboard.press("Shift+W")
     expect(page.locator("#fill-run")).to_be_disabled()
     page.click("#fill-outline")
@@ -277,3 +276,18 @@ def test_what_a_chart_is_too_large_for_is_said_before_the_button(
     lying.click(force=True)
     expect(page.locator("#messages")).to_contain_text("takes up to 10,000 stitches")
     expect(page.locator("#fabric-flat")).to_have_attribute("aria-checked", "true")
+
+
+@pytest.mark.slow
+def test_a_large_chart_is_pulled_in_blocks_and_each_stitch_has_a_value(
+    visitor: Page, service: str
+) -> None:
+    page = open_design(visitor, service, chart="\n".join(["K" * 250] * 200))
+    page.click("#stretch-run")
+    expect(page.locator("#stretch-slider")).to_be_enabled()
+    expect(page.locator(".stretch-note")).to_contain_text("3 × 3 stitches count as one")
+    for share in (0.2, 0.5, 0.8):
+        box = page.locator("#chart").bounding_box()
+        assert box
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + share * box["height"])
+        expect(page.locator("#readout")).to_contain_text(re.compile(rf"stretch {NUMBER} %"))

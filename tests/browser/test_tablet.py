@@ -72,6 +72,26 @@ def test_the_plots_are_one_click_away(flat_studio: Page) -> None:
     assert comes_inside(flat_studio, "#tab-curve", "#inspector")
 
 
+def test_a_verb_in_a_sentence_breaks_with_its_line(flat_studio: Page) -> None:
+    """Its first words begin the line, and the rest of the sentence goes on beside its last ones."""
+    flat_studio.click("#provenance")
+    for width in (390, 820, 1280):
+        flat_studio.set_viewport_size({"width": width, "height": 844})
+        settle(flat_studio)
+        lines = flat_studio.locator("#narrower .link").evaluate_all(
+            """(links) => links.map((link) => {
+                const rest = document.createRange();
+                rest.setStart(link.nextSibling, 0);
+                rest.setEnd(link.nextSibling, 1);
+                const [words, box] = [[...link.getClientRects()], link.parentElement];
+                return [words[0].left - box.getBoundingClientRect().left,
+                        rest.getBoundingClientRect().top - words.at(-1).top];
+            })"""
+        )
+        assert lines
+        assert all(abs(start) < 1 and abs(below) < 1 for start, below in lines), width
+
+
 def test_the_readout_is_whole_and_the_chart_keeps_still(flat_studio: Page) -> None:
     flat_studio.set_viewport_size(TABLET)
     settle(flat_studio)

@@ -11,7 +11,7 @@ from pydantic import Field
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.phases import pure_fabric
-from knitcore.chart.stitch_chart import StitchChart, check_stitches
+from knitcore.chart.stitch_chart import StitchChart
 from knitcore.cloth.flat import (
     Clamps,
     EnergyModel,
@@ -21,9 +21,11 @@ from knitcore.cloth.flat import (
     pull,
     strain_at_force,
 )
+from knitcore.cloth.flat.coarse import MAX_DIFFERENCE, block_side
+from knitcore.cloth.flat.grid import MAX_CELLS
 from knitcore.cloth.flat.margins import StretchMargins, sampled_steps, stretch_margins
 from knitcore.cloth.flat.strip import load_levels
-from knitcore.draw.strained_stitches import stitch_at, stitch_states
+from knitcore.draw.strained_stitches import spread, stitch_at, stitch_states
 from knitcore.garment.shaped import outline_marks
 
 from ...cli.options import out_option
@@ -38,14 +40,22 @@ from ..registry import Command, Operation
 Array = NDArray[np.float32]
 
 MAX_STITCHES = 40_000
-"""Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
+"""Largest chart of a test stitch by stitch over REST; larger ones are pulled in blocks."""
 MIXED = (
     "Forces may differ by a quarter from the chart's curve: mixed stitches first unfold, and the "
     "laws of a test can only stiffen."
 )
 """Said of tests of charts of several fabrics."""
+IN_BLOCKS = "The chart is large: {0} × {0} stitches count as one."
+"""Said of tests in blocks of so many stitches a side."""
+BLURRED = (
+    f"That may change forces by {100 * MAX_DIFFERENCE['force']:.0f} % and the waist by "
+    f"{100 * MAX_DIFFERENCE['waist']:.1f} % of the width, which the intervals allow for."
+)
+"""Said of those of several fabrics."""
 MAX_VALUES = 60 * MAX_STITCHES
-"""Largest number of stitches times steps over REST: the answer has seven numbers for each."""
+"""Largest number of stitches, or blocks, times steps over REST: the answer has seven numbers for
+each."""
 
 
 class StretchRequest(GaugedRequest):
@@ -79,6 +89,13 @@ class StretchRequest(GaugedRequest):
     length_mm: float | None = Field(
         None, ge=1, le=10_000, description="Size wale-wise; from the gauge by default."
     )
+    block: int | None = Field(
+        None,
+        ge=1,
+        le=100,
+        description="Stitches a side of the blocks that are taken for one stitch; by default 1, "
+        "and more where a chart is too large for that.",
+    )
 
     def check_parts(self, context: Context) -> None:
         """Refuse a test without one load, or one that is too large for the service."""
@@ -86,16 +103,31 @@ class StretchRequest(GaugedRequest):
             raise InputError("strain", "is missing.", "Give a strain or a force.")
         if self.strain is not None and self.force_n is not None:
             raise InputError("force_n", "strain is given as well.", "Give one of the two.")
-        stitches = to_chart(self.chart).stitches
         if context.local:
             return
-        check_stitches(stitches, MAX_STITCHES, instead=", or the command line")
-        if stitches * self.steps > MAX_VALUES:
+        chart = to_chart(self.chart)
+        block = self.block_of(chart, context)
+        blocks = math.ceil(chart.rows / block) * math.ceil(chart.columns / block)
+        if blocks > MAX_STITCHES:
+            least = block_side(chart.rows, chart.columns, MAX_STITCHES)
+            raise InputError(
+                "block",
+                f"{blocks} blocks are too many here.",
+                f"Leave it out, use at least {least}, or the command line.",
+            )
+        if blocks * self.steps > MAX_VALUES:
             raise InputError(
                 "steps",
                 f"{self.steps} are too many here for a chart of this size.",
-                f"Use at most {MAX_VALUES // stitches}, or the command line.",
+                f"Use at most {MAX_VALUES // blocks}, or the command line.",
             )
+
+    def block_of(self, chart: StitchChart, context: Context) -> int:
+        """Stitches a side of the blocks of a test."""
+        most = MAX_CELLS // 4 if context.local else MAX_STITCHES
+        if self.block is not None:
+            return min(self.block, max(chart.rows, chart.columns))
+        return 1 if chart.rows * chart.columns <= most else block_side(chart.rows, chart.columns)
 
 
 StitchValues = list[list[float]]
@@ -103,8 +135,8 @@ StitchEnds = tuple[StitchValues, StitchValues]
 
 
 class StitchFields(ResultModel):
-    """Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is
-    no stitch.
+    """Values at the stitches, or at blocks of them: [step][row * columns + column], bottom row
+    first; 0 where there is no stitch.
     """
 
     strain_course: StitchValues
@@ -163,6 +195,7 @@ class StretchCurve(IntervalResult):
     tightest: float = Field(
         description="Share of its stretch that the tightest cloth has used at the last step."
     )
+    block: int = Field(description="Stitches a side of the blocks that were taken for one.")
     messages: list[str]
 
 
@@ -199,6 +232,7 @@ def _test(
         stitch=None if request.outline is None else outline_marks(request.outline),
         size=request.relaxed_size,
         laws=None,  # those that the request chooses are in the material
+        block=request.block_of(chart, context),
     )
     test = request.pass_to(
         pull,
@@ -235,6 +269,7 @@ def _curve(request: StretchRequest, test: StripTest, margins: StretchMargins) ->
         nearest_lock_up=_nearest(test),
         first_taut=_first_taut(test),
         tightest=test.tightest() if test.steps else 0.0,
+        block=test.sheet.block,
         messages=_messages(test, mixed=pure_fabric(to_chart(request.chart)) is None),
     )
 
@@ -254,7 +289,13 @@ def _messages(test: StripTest, *, mixed: bool) -> list[str]:
             f"The tightest stitches stretch {used:.2f} times as far as their yarn allows: the "
             "published model leaves out where real cloth runs out of stretch."
         )
-    return [*messages, MIXED] if mixed and full else messages
+    if mixed and full:
+        messages.append(MIXED)
+    if (block := test.sheet.block) > 1:
+        messages.append(IN_BLOCKS.format(block))
+        if mixed:
+            messages.append(BLURRED)
+    return messages
 
 
 def _stitches(
@@ -277,6 +318,8 @@ def _stitches(
         id=OPERATION.key(request),
         stitch_fields=shown,
     )
+    if test.sheet.block > 1:
+        states = spread(states, chart.rows, chart.columns)
     view = StretchView(
         direction=request.direction,
         positions_mm=states.positions_mm,
@@ -355,7 +398,6 @@ OPERATION = Operation(
     stretch,
     tag="stretch",
     summary="Pull a chart between two clamps",
-    most_stitches=MAX_STITCHES,
     example={
         "chart": {"fabric": "garter", "columns": 4, "rows": 4},
         "material": "acrylic",

@@ -236,7 +236,7 @@ function describe(studio, view) {
   const used = studio.field("utilisation")?.[i];
   /** @param {"strain" | "utilisation"} name @param {number} [decimals] */
   const within = (name, decimals) => {
-    const ends = studio.interval(name)?.map((end) => end[studio.step.value]?.[i]);
+    const ends = studio.interval(name, i);
     return ends ? ` (${percentRange(ends, decimals)})` : "";
   };
   if (id === "strain" && strain !== undefined) {

@@ -14,7 +14,7 @@ import { difference, interpolated } from "../../core/difference.js";
 import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, range } from "../../core/format.js";
 import { Latest } from "../../services/latest.js";
-import { h } from "../../elements/dom.js";
+import { h, remark } from "../../elements/dom.js";
 import { drawPair } from "../../plots/pair.js";
 import { dialog } from "../../widgets/dialog.js";
 import { segmented } from "../../widgets/fields.js";
@@ -97,6 +97,7 @@ export function create(studio, { keeper }) {
   const latest = new Latest(0);
   const load = () => {
     element.classList.add("busy");
+    if (!compared.length) status.replaceChildren(remark("The numbers of both pieces come in a moment …"));
     latest.run(
       async (signal) => {
         const all = await Promise.all(

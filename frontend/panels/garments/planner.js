@@ -184,7 +184,9 @@ export function create(studio, { keeper }) {
   const stepsRow = h(
     "div",
     { class: "line wrap gap-6", hidden: true },
-    ...["Each", wider, "% wider and", longer, "% longer than the one before"],
+    "Each",
+    h("span", { class: "line gap-6" }, wider, "% wider and"),
+    h("span", { class: "line gap-6" }, longer, "% longer than the one before"),
   );
 
   // --- what comes of it -------------------------------------------------------------------------

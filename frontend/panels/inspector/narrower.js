@@ -7,9 +7,10 @@
 
 import { api } from "../../api.js";
 import { LINES } from "../../core/directions.js";
-import { percent, percentRange } from "../../core/format.js";
+import { percent, percentRange, unbroken } from "../../core/format.js";
 import { byId, h } from "../../elements/dom.js";
 import { adopt, uploaded } from "../../services/yarns.js";
+import { verb } from "../../widgets/buttons.js";
 import { attempt } from "../../widgets/problem.js";
 
 /** @typedef {PredictResult["narrowing"][number]} Narrowing */
@@ -30,7 +31,7 @@ export function narrower(studio) {
     id: "pull-file",
     accept: ".csv,.xlsx,.xls,.h5,.hdf5",
     class: "visually-hidden",
-    tabindex: "-1",
+    tabIndex: -1,
     "aria-label": "Stretch test of the strip",
     onchange: async () => {
       const chosen = file.files?.[0];
@@ -61,8 +62,8 @@ export function narrower(studio) {
         return h(
           "div",
           { title: because },
-          h("button", { type: "button", class: "link", onclick: () => give(helped[0]) }, capital(how)),
-          `: then ${inNumbers(helped)}.`,
+          verb(capital(how), () => give(helped[0])),
+          unbroken(`: then ${inNumbers(helped)}.`),
         );
       }),
     );

@@ -86,7 +86,7 @@ export function create(studio) {
         onclick: () => choose(ink, stamp),
       },
       h("img", { class: "thumbnail", alt: "", src: motifPicture(ink, editing.symbols.value) }),
-      h("span", { class: "ellipsis" }, name),
+      h("span", {}, name),
     );
   };
   /** @param {string} title @param {string} group @param {HTMLElement[]} motifs @param {HTMLElement[]} stitches */

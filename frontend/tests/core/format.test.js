@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { figure, percent, percentRange, percents, range, spread } from "../../core/format.js";
+import { figure, percent, percentRange, percents, range, spread, unbroken } from "../../core/format.js";
 
 test("three figures, with the zeros that count", () => {
   assert.equal(figure(0.223147), "0.223");
@@ -34,4 +34,8 @@ test("an interval that is too wide is said in words", () => {
   assert.deepEqual(spread([100, 300]), { text: "100 – 300", wide: false });
   assert.deepEqual(spread([24, 1656]), { text: "up to 8 times less or more", wide: true });
   assert.deepEqual(spread([0, 2]), { text: "0 – 2.0", wide: false });
+});
+
+test("a sentence keeps an interval and its unit together", () => {
+  assert.equal(unbroken("then 18 – 20 % along rows"), "then 18\u00a0–\u00a020\u00a0% along rows");
 });

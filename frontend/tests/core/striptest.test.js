@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { lockUpInWords, table } from "../../core/striptest.js";
+import { atStitches, lockUpInWords, table } from "../../core/striptest.js";
 
 /** @type {Parameters<typeof lockUpInWords>[0]} */
 const TEST = {
@@ -51,4 +51,12 @@ test("a test is a table of its steps with their intervals", () => {
     "0.2,2,1.5,3,0.02,-0.2,-0.4,-0.1",
     "",
   ]);
+});
+
+test("stitches have the values of their blocks", () => {
+  const [values, size] = [[1, 2, 3, 4], { rows: 3, columns: 4 }];
+  assert.equal(atStitches({ ...size, block: 1 }, values), values);
+  const all = atStitches({ ...size, block: 2 }, values);
+  assert.deepEqual(all, [1, 1, 2, 2, 1, 1, 2, 2, 3, 3, 4, 4]);
+  assert.equal(atStitches({ ...size, block: 2 }, values), all);
 });

@@ -72,6 +72,8 @@ class Sheet:
     mixing : (codes, laws) shares of the laws in the constants of each code, if laws are mixed.
     log_sd : gives :attr:`stress_log_sd`, as in
         :class:`knitcore.prediction.quarter_laws.QuarterLaws`.
+    quarters : the quarters that the cells stand for, where a cell holds several.
+    block : stitches a side of the blocks of which a cell is a quarter.
 
     Examples
     --------
@@ -88,11 +90,15 @@ class Sheet:
         model: SheetModel,
         mixing: scipy.sparse.csr_array | None = None,
         log_sd: Callable[[], Array] | None = None,
+        quarters: QuarterGrid | None = None,
+        block: int = 1,
     ) -> None:
         codes = len(laws) if mixing is None else mixing.shape[0]
         if int(grid.law_of_cell.max()) >= codes:
             raise InputError("laws", "a cell has no law.", "Give a law for every code of the grid.")
         self.grid = grid
+        self.quarters = quarters or grid
+        self.block = block
         self.model = model
         self._log_sd = log_sd
         self._mixing = mixing

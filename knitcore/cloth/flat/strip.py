@@ -13,13 +13,15 @@ from knitcore.base.errors import Cancelled, InputError, Progress
 from knitcore.base.kinds import as_numbers, check_callables, check_kind
 from knitcore.chart.fabric import PHASES, Direction
 from knitcore.chart.phases import as_stitches
-from knitcore.chart.stitch_chart import StitchChart, as_chart
+from knitcore.chart.stitch_chart import MAX_STITCHES_PER_SIDE, StitchChart, as_chart
+from knitcore.cloth.flat.coarse import coarse_grid
 from knitcore.cloth.flat.equilibrium_path import Path, run_path
 from knitcore.cloth.flat.grid import QuarterGrid, check_cloth
 from knitcore.cloth.flat.grid_sheet import Sheet
 from knitcore.cloth.flat.sheet_models import EnergyModel, SheetModel, energy_model
 from knitcore.cloth.flat.strip_results import StripTest
 from knitcore.materials import Material, as_material
+from knitcore.prediction.patches import MAX_SIDE
 from knitcore.prediction.quarter_laws import QuarterLaws, quarter_laws
 from knitcore.prediction.size import RelaxedSize
 
@@ -53,6 +55,7 @@ def strip_test(
     laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
+    block: int = 1,
     progress: Progress | None = None,
     cancelled: Cancelled | None = None,
 ) -> StripTest:
@@ -74,6 +77,8 @@ def strip_test(
     laws : of the quarter cells; by default those with which the swatch agrees with
         :func:`knitcore.prediction.predict.predict`.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
+    block : stitches a side of the blocks that a large chart is computed in
+        (:mod:`knitcore.cloth.flat.coarse`); 1 for quarters of stitches.
     progress : called with (steps done, steps in all).
     cancelled : called from time to time; True stops the test.
 
@@ -110,6 +115,7 @@ def strip_test(
         laws=laws,
         width_mm=width_mm,
         length_mm=length_mm,
+        block=block,
     )
     return pull(
         sheet,
@@ -132,8 +138,9 @@ def chart_sheet(
     laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
+    block: int = 1,
 ) -> Sheet:
-    """The sheet of a chart of a material; ``stitch`` and ``size`` as for :func:`strip_test`.
+    """The sheet of a chart of a material; parameters as for :func:`strip_test`.
 
     Its cells' laws and sizes are such that a large swatch agrees with
     :func:`knitcore.prediction.predict.predict`.
@@ -144,13 +151,17 @@ def chart_sheet(
     if laws is not None:
         check_kind("laws", laws, QuarterLaws, "Give QuarterLaws, as quarter_laws() returns them.")
     sizes = {fabric: record.stitch_mm for fabric, record in material.fabrics.items()}
-    local = laws or _local_laws(chart, material, stitch, size)
+    check_count("block", block, 1, max(chart.purl.shape))
+    local = laws or _local_laws(chart, material, stitch, size, even=block > 1)
     grid = QuarterGrid.of_chart(
         chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm
     )
     place = local.place.repeat(2, axis=0).repeat(2, axis=1)
     grid = replace(grid, law_of_cell=len(PHASES) * place + grid.law_of_cell)
-    return Sheet(grid, local.laws, chosen, local.mixing, local.log_sd)
+    if block == 1:
+        return Sheet(grid, local.laws, chosen, local.mixing, local.log_sd)
+    coarse, mixing = coarse_grid(grid, local.mixing, block)
+    return Sheet(coarse, local.laws, chosen, mixing, local.log_sd, grid, block)
 
 
 def _local_laws(
@@ -158,14 +169,18 @@ def _local_laws(
     material: Material,
     stitch: NDArray[np.bool_] | None,
     size: RelaxedSize | None,
+    *,
+    even: bool,
 ) -> QuarterLaws:
     """Laws of a piece; a shaped one counts as its bounding rectangle, filled with its pattern."""
+    most = MAX_STITCHES_PER_SIDE if even else MAX_SIDE  # even laws know a part by its patches only
     if stitch is None or np.all(stitch):
-        return quarter_laws(chart, material, size)
+        return quarter_laws(chart, material, size, even=even, most=most)
     check_cloth(stitch, chart.rows, chart.columns)
     rows, columns = (np.flatnonzero(stitch.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    laws = quarter_laws(_continued(chart.purl[here], stitch[here]), material, size)
+    filled = _continued(chart.purl[here], stitch[here])
+    laws = quarter_laws(filled, material, size, even=even, most=most)
     place, scale = np.zeros(stitch.shape, dtype=np.intp), np.ones((*stitch.shape, 2))
     place[here], scale[here] = laws.place, laws.scale
     return replace(laws, place=place, scale=scale)

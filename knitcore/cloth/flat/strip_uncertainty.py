@@ -14,6 +14,7 @@ parameters add up. The parameters are
   as uncertain as the curve at the test's stress;
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
+- what blocks of stitches leave out (:mod:`knitcore.cloth.flat.coarse`), where fabrics are mixed;
 - the model's own error, where fabrics are mixed: for the force that of the chart's prediction
   (:mod:`knitcore.prediction.quarter_laws`), for strains one for each fabric separately.
 
@@ -30,6 +31,7 @@ from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array
 from knitcore.chart.fabric import PHASES, Direction
+from knitcore.cloth.flat import coarse
 from knitcore.cloth.flat.fields import (
     cell_strains,
     corner_means,
@@ -67,6 +69,7 @@ Its deviation is also that of a shear modulus that was not fitted."""
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, for stitches of mixed quarters and of one fabric."""
 MODEL_ERRORS = "the mixture's own error, as for the chart's moduli"
+BLOCKS = "what blocks of stitches leave out"
 SHEAR_ASSUMED = (
     f"an assumed shear modulus, within a factor of {np.exp(Z_SCORE * LOG_SHEAR_PRIOR[1]):.0f}"
 )
@@ -185,6 +188,9 @@ class StripSpread:
         direct = np.where(used[0] >= used[1], used[0] * locks[..., 0], used[1] * locks[..., 1])
         variances[2] += corner_means(grid, direct) ** 2
         force_log_sd = math.hypot(math.sqrt(force_variance), self._force_model_sd(step))
+        if _is_blurred(sheet):
+            force_log_sd = math.hypot(force_log_sd, coarse.LOG_FORCE_SD)
+            waist_variance += coarse.WAIST_SD**2
         return StepSpread(
             log_interval(float(test.force_n[step]), force_log_sd),
             force_log_sd,
@@ -214,7 +220,7 @@ class StripSpread:
 
 def model_log_sd(sheet: Sheet) -> float:
     """The composite's own error in a sheet, by its share of stitches with mixed quarters."""
-    grid = sheet.grid
+    grid = sheet.quarters
     codes, there = grid.law_of_cell % len(PHASES), grid.cloth[::2, ::2]
     quarters = np.stack([codes[i::2, j::2][there] for i in (0, 1) for j in (0, 1)])
     pure = float(np.mean(np.ptp(quarters, axis=0) == 0))
@@ -263,12 +269,19 @@ def interval_source(sheet: Sheet, material: Material) -> str:
     said = [material.record(PHASES[phase]).uncertainty.source for phase in _phases(sheet)]
     said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
     said += [MODEL_ERRORS] if model_log_sd(sheet) else []
+    said += [BLOCKS] if _is_blurred(sheet) else []
     return in_a_sentence(said)
+
+
+def _is_blurred(sheet: Sheet) -> bool:
+    """Return whether cells hold stitches of several fabrics."""
+    return sheet.block > 1 and len(_phases(sheet)) > 1
 
 
 def _phases(sheet: Sheet) -> list[int]:
     """Phases of the cells of a sheet's cloth."""
-    phases: list[int] = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth] % len(PHASES)).tolist()
+    cells = sheet.quarters
+    phases: list[int] = np.unique(cells.law_of_cell[cells.cloth] % len(PHASES)).tolist()
     return phases
 
 

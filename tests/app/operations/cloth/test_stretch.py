@@ -168,3 +168,37 @@ def test_ends_that_slide_let_a_pure_fabric_narrow_evenly(
 ) -> None:
     across = pulled(client, clamps=clamps)["stitch_fields"]["strain_course"]
     assert bool(np.ptp(across[-1]) < 2e-3) is uniform
+
+
+@pytest.mark.slow
+def test_a_chart_of_any_size_is_pulled_in_blocks_and_says_so(client: TestClient) -> None:
+    chart = "\n".join(
+        "".join("KP"[(row // 4 + k // 4) % 2] for k in range(210)) for row in range(200)
+    )
+    answer = pulled(client, chart=chart, strain=0.1, steps=1)
+    assert answer["block"] == 3
+    for values in answer["stitch_fields"].values():
+        assert values is None or np.shape(values)[-1] == 67 * 70
+    assert answer["messages"][-2].endswith("3 × 3 stitches count as one.")
+    assert answer["messages"][-1].endswith("which the intervals allow for.")
+    assert "what blocks of stitches leave out" in answer["interval_source"]
+    assert refusal(client, "stretch", ASKED | {"chart": chart, "block": 1})["field"] == "block"
+
+
+def test_blocks_give_nearly_the_same_and_the_view_has_all_stitches(client: TestClient) -> None:
+    chart = "\n".join(["KPKPKPKPKKKKKKKKK"] * 9 + ["K" * 17, "P" * 17] * 5)
+    exact, blurred = (pulled(client, chart=chart, block=block) for block in (None, 2))
+    assert (exact["block"], blurred["block"]) == (1, 2)
+    assert blurred["force_n"] == pytest.approx(exact["force_n"], rel=0.1)
+    assert blurred["waist_strain"] == pytest.approx(exact["waist_strain"], abs=0.02)
+    request = StretchRequest.model_validate(ASKED | {"chart": chart, "block": 2})
+    view = stretch(request, Context(Path())).view
+    assert isinstance(view, StretchView)
+    assert view.positions_mm.shape == (4, 19, 17, 2)
+    assert view.strain.shape == (4, 19, 17, 2)
+    assert view.utilisation.shape == (4, 19, 17)
+    assert np.all(np.diff(view.positions_mm[-1, ..., 1], axis=0) > 0)
+    assert np.all(np.diff(view.positions_mm[-1, ..., 0], axis=1) > 0)
+    arguments = ["KPKP/PKPK", "--size", "16x16", "--material", "acrylic", "--direction", "wale"]
+    shown = run("stretch", *arguments, "--strain", "0.1", "--steps", "1", "--block", "4")
+    assert shown["block"] == 4

@@ -68,7 +68,8 @@ def _laws_as_they_are() -> Iterator[None]:
     """Cells with the pure fabrics' own laws, so that a changed law is a changed cell."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(
-            "knitcore.cloth.flat.strip.quarter_laws", lambda chart, of, gauge: flat_laws(chart, of)
+            "knitcore.cloth.flat.strip.quarter_laws",
+            lambda chart, of, gauge, **_: flat_laws(chart, of),
         )
         yield
 
