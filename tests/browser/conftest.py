@@ -69,6 +69,7 @@ def profile(browser: Browser) -> Iterator[BrowserContext]:
     context = browser.new_context(viewport={"width": 1280, "height": 720}, reduced_motion="reduce")
     context.set_default_timeout(TIMEOUT_MS)
     context.add_init_script(COLOURED_CLOTH)
+    context.new_page()  # keeps Chromium's window, which takes as long to make as the page
     yield context
     context.close()
 
@@ -92,7 +93,7 @@ def visitor(profile: BrowserContext, visited: set[str]) -> Iterator[Page]:
     failures: list[str] = []
     page.on("pageerror", lambda error: failures.append(f"{error.message}\n{error.stack}"))
     yield page
-    for window in profile.pages:
+    for window in profile.pages[1:]:
         address = urlsplit(window.url)
         if address.scheme == "http":
             visited.add(f"http://{address.netloc}")

@@ -98,6 +98,17 @@ def number(page: Page, selector: str) -> float:
     return float((page.locator(f"{selector} .value").text_content() or "").replace("−", "-"))
 
 
+def expect_number(page: Page, selector: str, low: float, high: float) -> None:
+    """Until the number that a part of the page shows lies between two others."""
+    page.wait_for_function(
+        """([selector, low, high]) => {
+            const shown = document.querySelector(selector).textContent.replace("−", "-");
+            return shown && low <= Number(shown) && Number(shown) <= high;
+        }""",
+        arg=[selector, low, high],
+    )
+
+
 def kept_design(page: Page) -> dict[str, Any]:
     """The design as the browser keeps it, once it is kept."""
     page.wait_for_function("() => !('unsaved' in document.documentElement.dataset)")

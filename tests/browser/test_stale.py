@@ -15,6 +15,7 @@ from tests.browser.page import (
     Chart,
     cut_off,
     drop,
+    expect_number,
     held,
     keep_version,
     kept_design,
@@ -43,11 +44,10 @@ STATES = """() => Object.fromEntries([...document.querySelectorAll("[data-result
 }))"""
 
 
-def results(page: Page) -> dict[str, str]:
-    """Read why each result does not count, or that it is empty or current."""
-    states = page.evaluate(STATES)
-    assert isinstance(states, dict)
-    return states
+def expect_stale(page: Page, why: str, *results: str) -> None:
+    """Until results say why they do not count."""
+    for result in results:
+        expect(page.locator(f"[data-result={result}]")).to_have_attribute("data-stale", why)
 
 
 def wait_until(page: Page, state: str, but: tuple[str, ...] = ()) -> None:
@@ -87,14 +87,15 @@ def test_no_result_outlives_what_it_was_made_for(visitor: Page, service: str) ->
     expect(page.locator("#limb-answer")).to_contain_text("mmHg")
     with sent_view(page, '"stretch":{'):
         stretched(page, "10")
-    assert set(results(page)) == RESULTS
+    names = f"Object.keys(({STATES})()).sort().join()"
+    page.wait_for_function(f"names => {names} === names", arg=",".join(sorted(RESULTS)))
     wait_until(page, "current")
 
     # From here on nothing can be made again.
     cut_off(page)
     page.mouse.click(*Chart(page).at(5, 5))
     wait_until(page, "stale", OF_THE_YARN)
-    assert results(page)["drape"] == "Of the chart before it was changed"
+    expect_stale(page, "Of the chart before it was changed", "drape")
     expect(page.locator(".fabric-caption")).to_contain_text("before the change")
     page.keyboard.press("Control+z")
     asked_anew = ("numbers", "rigidity", "fabric", "curve", "limb")
@@ -102,7 +103,7 @@ def test_no_result_outlives_what_it_was_made_for(visitor: Page, service: str) ->
     page.click("#material-button")
     page.locator("[role=menuitemradio][aria-checked=false]:enabled").first.click()
     wait_until(page, "stale")
-    assert {results(page)[name] for name in ("drape", "find", "atlas")} == {"With another yarn"}
+    expect_stale(page, "With another yarn", "drape", "find", "atlas")
     for barred in ("fill", "find", "outline"):
         expect(page.locator(f"#{barred}-answer")).to_have_js_property("inert", True)
     page.keyboard.press("Control+a")
@@ -128,13 +129,13 @@ def test_numbers_come_with_the_title_of_their_part(visitor: Page, service: str) 
     waiting = held(page, "**/api/v1/predict")
     page.select_option("#inspector-scope", "High")
     when_held(page, waiting)
-    assert (head.inner_text(), width.inner_text()) == ("Wide 9 × 1", wide)
-    for name in ("numbers", "rigidity"):
-        assert results(page)[name] == "Of another part of the chart"
+    expect_stale(page, "Of another part of the chart", "numbers", "rigidity")
+    expect(head).to_have_text("Wide 9 × 1")
+    expect(width).to_have_text(wide)
     for route in waiting:
         route.continue_()
     expect(head).to_have_text("High 2 × 8")
-    assert float(width.inner_text()) < 0.5 * float(wide)
+    expect_number(page, "#size-course .value", 0.0, 0.5 * float(wide))
     wait_until(page, "current", tuple(RESULTS - {"numbers", "rigidity"}))
 
 

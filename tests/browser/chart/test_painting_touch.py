@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import CHART, TIMEOUT_MS, flat, open_small_chart
 from tests.browser.page import Chart, kept_chart, purls
@@ -84,7 +84,7 @@ def test_two_fingers_move_the_chart_and_paint_nothing(tablet: Page, touch: Touch
     assert (x1 - x, y1 - y) == pytest.approx((30, 20), abs=3)
     assert (wide1, high1) == pytest.approx((wide, high), abs=1)
     assert kept_chart(tablet) == CHART
-    assert tablet.locator("#action-undo").is_disabled()
+    expect(tablet.locator("#action-undo")).to_be_disabled()
 
 
 def test_two_fingers_zoom_about_the_point_between_them(tablet: Page, touch: Touch) -> None:

@@ -12,12 +12,12 @@ from tests.browser.conftest import CHART, flat, second_window, wait_for_numbers
 from tests.browser.page import drag, keep_version, kept_chart, kept_design
 
 SERVICE = "**/api/v1/designs**"
-AGREE = """async () => {
+AT_THE_SERVICE = """async (expected) => {
     const { chart, remote } = JSON.parse(localStorage['knitcore.design']);
-    const answer = await fetch(`/api/v1/designs/${remote.id}`);
-    return (await answer.json()).document.chart === chart;
+    const { document } = await (await fetch(`/api/v1/designs/${remote.id}`)).json();
+    return Object.entries({ chart, ...expected }).every(([k, value]) => document[k] === value);
 }"""
-"""Return whether the browser and the service have the same chart."""
+"""Return whether the service has the browser's chart and what else is expected of the design."""
 LINK = re.compile(r"#shared/[\w-]{20,}$")
 
 
@@ -37,26 +37,12 @@ def renamed(page: Page, name: str) -> None:
     page.keyboard.press("Enter")
 
 
-def at_the_service(page: Page) -> dict[str, str]:
-    """The design's document as the service has it."""
-    document = page.evaluate(
-        """async () => {
-            const { remote } = JSON.parse(localStorage['knitcore.design']);
-            const answer = await fetch(`/api/v1/designs/${remote.id}`);
-            return (await answer.json()).document;
-        }"""
-    )
-    assert isinstance(document, dict)
-    return document
-
-
 def test_strokes_and_names_reach_the_service(flat_studio: Page) -> None:
     chart = painted(flat_studio)
     renamed(flat_studio, "Cuff")
-    saved(flat_studio)
-    assert at_the_service(flat_studio)["chart"] == chart != CHART
-    assert at_the_service(flat_studio)["name"] == "Cuff"
-    assert "#design/" in flat_studio.url
+    assert chart != CHART
+    flat_studio.wait_for_function(AT_THE_SERVICE, arg={"chart": chart, "name": "Cuff"})
+    expect(flat_studio).to_have_url(re.compile("#design/"))
 
 
 def test_what_is_painted_while_the_service_is_away_is_delivered_later(flat_studio: Page) -> None:
@@ -69,8 +55,7 @@ def test_what_is_painted_while_the_service_is_away_is_delivered_later(flat_studi
     wait_for_numbers(flat_studio)
     assert kept_chart(flat_studio) == chart
     flat_studio.unroute(SERVICE)
-    saved(flat_studio)
-    assert at_the_service(flat_studio)["chart"] == chart
+    flat_studio.wait_for_function(AT_THE_SERVICE, arg={"chart": chart})
 
 
 def test_two_windows_merge_their_strokes(flat_studio: Page) -> None:
@@ -80,7 +65,7 @@ def test_two_windows_merge_their_strokes(flat_studio: Page) -> None:
     flat_studio.bring_to_front()
     drag(flat_studio, 40, 0, start=(-120, 60))
     saved(flat_studio)
-    flat_studio.wait_for_function(AGREE)
+    flat_studio.wait_for_function(AT_THE_SERVICE)
     chart = kept_chart(flat_studio)
     assert all(mine == "P" for mine, other in zip(chart, theirs, strict=True) if other == "P")
     assert chart.count("P") > theirs.count("P")
@@ -140,7 +125,7 @@ def test_a_version_is_restored_and_the_state_before_it_kept(flat_studio: Page) -
     flat_studio.get_by_label("Restore First stroke").click()
     expect(flat_studio.locator("#versions-dialog")).to_be_hidden()
     assert kept_chart(flat_studio) == first
-    assert at_the_service(flat_studio)["chart"] == first
+    flat_studio.wait_for_function(AT_THE_SERVICE, arg={"chart": first})
     flat_studio.keyboard.press("Control+z")  # what is restored can be undone like any step
     assert kept_chart(flat_studio) == second
 
@@ -160,13 +145,12 @@ def test_a_link_shows_the_design_to_others_and_lets_them_copy_it(
     page.goto(link)
     expect(page.locator("#shared")).to_contain_text("Shared with you")
     drag(page, 0, 50, start=(-80, -30))
-    assert at_the_service(flat_studio)["chart"] == chart
+    flat_studio.wait_for_function(AT_THE_SERVICE, arg={"chart": chart})
     page.click("#shared-copy")
     expect(page.locator("#shared")).to_be_hidden()
-    saved(page)
-    copy = at_the_service(page)
-    assert copy["chart"].count("P") > chart.count("P")
-    assert copy["name"].endswith("(copy)")
+    expect(page.locator(".design-name")).to_have_value(re.compile(r"\(copy\)$"))
+    page.wait_for_function(AT_THE_SERVICE, arg={"name": page.input_value(".design-name")})
+    assert kept_chart(page).count("P") > chart.count("P")
     stranger.close()
 
 
