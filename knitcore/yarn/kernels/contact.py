@@ -4,7 +4,8 @@ import numpy as np
 
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
-from knitcore.yarn.kernels.curve_samples import control_of, laid_out
+from knitcore.yarn.kernels.couplings import add_to_sizes, couple, end_span, no_couplings
+from knitcore.yarn.kernels.curve_samples import laid_out
 from knitcore.yarn.kernels.potential import potential, potential_and_derivatives
 from knitcore.yarn.kernels.structures import ContactLaw, Ints, Layout, Pairs
 
@@ -77,20 +78,7 @@ def contact_slopes(
 
 
 @compiled
-def _add_transposed(matrix: Array, size: int) -> None:
-    """A + A.T of the leading block, in place; tile by tile, as columns are far apart."""
-    tile = 32
-    for first in range(0, size, tile):
-        for second in range(0, first + 1, tile):
-            for i in range(first, min(first + tile, size)):
-                for j in range(second, min(second + tile, i + 1)):
-                    both = matrix[i, j] + matrix[j, i]
-                    matrix[i, j] = both
-                    matrix[j, i] = both
-
-
-@compiled
-def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one sweep
+def contact_hessian(  # noqa: PLR0915 - one pair at a time, in one sweep
     curve: Array,
     course_mm: float,
     wale_mm: float,
@@ -104,46 +92,37 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     """Hessian of the contact, but for the blocks of samples with themselves.
 
     What couples different samples is added to the tiles (see
-    :class:`~knitcore.yarn.kernels.tiles.TiledMatrix`). Returned are the rows of the two sizes
-    of a stitch, (2, unknowns), and what couples samples with themselves: (n, 3, 3) in x, (n, 3, 3)
-    between x (first) and d1 (second).
+    :class:`~knitcore.yarn.kernels.tiles.TiledMatrix`), once (see ``add_transposed``). Returned are
+    the rows of the two sizes of a stitch, (2, unknowns), and what couples samples with themselves:
+    (n, 3, 3) in x, (n, 3, 3) between x (first) and d1 (second).
 
-    ``start[i] … start[i + 1]`` are the pairs of sample i. Samples of a span share their control
-    points, so they are summed before anything is written into the large matrix.
+    ``start[i] … start[i + 1]`` are the pairs of sample i.
     """
     reach = 4.0 * law.radius * law.radius
-    rows, wales, mirror, basis = layout.rows, layout.wales, layout.mirror, layout.basis
-    dof, sign = layout.dof, layout.sign
+    rows, wales = layout.rows, layout.wales
     samples = layout.place.shape[0]
-    per_span = basis.shape[1]
+    per_span = layout.basis.shape[1]
     count = samples // per_span
     size = layout.unknowns
-    tile_size = tiles.shape[1]
     sizes = np.zeros((2, size))
     position = np.zeros((curve.shape[0], 3, 3))
     position_speed = np.zeros((curve.shape[0], 3, 3))
-    n_controls = rows * count
     at = laid_out(curve, layout.place, course_mm, wale_mm)
-    # between the samples of a span and the control points that touch them, which have slots
-    slot, touched = np.empty(n_controls, np.int64), np.empty(n_controls, np.int64)
-    for k in range(n_controls):
-        slot[k] = -1
-    # rows by the position of a sample, then those by its speed
-    by_sample = np.zeros((n_controls, 18))
-    by_controls = np.zeros((n_controls, 6, 9))
+    couplings = no_couplings(layout)
     cell_position = np.zeros((curve.shape[0], 2, 3))
     cell_speed = np.zeros((curve.shape[0], 2, 3))
     # arrays, as the index of a tuple that varies is a branch for each of its entries
     stiffness, normal, ti, tj = np.zeros((3, 3)), np.empty(3), np.empty(3), np.empty(3)
-    row_block, row_in, row_sign = np.empty(18, np.int64), np.empty(18, np.int64), np.empty(18)
-    of_position, of_speed = np.zeros(18), np.zeros(18)
+    most = np.diff(start).max() if curve.shape[0] else 0
+    others, columns = np.empty(most, np.int64), np.empty((most, 2, 18))
     w = law.weight
     for row_i in range(rows):
         for span_i in range(count):
-            n_touched = 0
+            filled = 0
             for o_i in range(per_span):
                 i = row_i * samples + span_i * per_span + o_i
                 si = at[i, 5]
+                near = 0
                 for m in range(3):
                     ti[m] = curve[i, 1, m] / si
                 for q in range(start[i], start[i + 1]):
@@ -179,10 +158,10 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                             position[j, m, n] += fm * fn * stiff
                             position_speed[i, m, n] -= v1 * sj * normal[m] * ti[n]
                             position_speed[j, m, n] += v1 * si * fm * normal[m] * tj[n]
-                            of_position[3 * m + n] = -fn * stiff
-                            of_position[9 + 3 * m + n] = v1 * sj * ti[m] * fn * normal[n]
-                            of_speed[3 * m + n] = -v1 * si * normal[m] * tj[n]
-                            of_speed[9 + 3 * m + n] = v0 * ti[m] * tj[n]
+                            columns[near, 0, 3 * m + n] = -fn * stiff
+                            columns[near, 0, 9 + 3 * m + n] = v1 * sj * ti[m] * fn * normal[n]
+                            columns[near, 1, 3 * m + n] = -v1 * si * normal[m] * tj[n]
+                            columns[near, 1, 9 + 3 * m + n] = v0 * ti[m] * tj[n]
                     # derivatives with respect to the size of the cell
                     both = sj * ti[0] + si * tj[0]
                     for m in range(3):
@@ -206,73 +185,9 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                     sizes[0, size - 1] += mixed
                     sizes[1, size - 2] += mixed
                     sizes[1, size - 1] += stiffness[1, 1] * up * up
-                    # rows of sample i, columns of the control points of sample j
-                    row_j = j // samples
-                    span_j = (j % samples) // per_span
-                    o_j = (j % samples) % per_span
-                    for b in range(6):
-                        c, z_sign = control_of(span_j, b, count, mirror)
-                        c += row_j * count
-                        if slot[c] < 0:
-                            slot[c] = n_touched
-                            touched[n_touched] = c
-                            n_touched += 1
-                        to = slot[c]
-                        b0 = basis[0, o_j, b]
-                        b1 = basis[1, o_j, b]
-                        into = by_sample[to]
-                        for m in range(18):
-                            into[m] += b0 * of_position[m] + b1 * of_speed[m]
-                        if z_sign < 0.0:
-                            for m in range(2, 18, 3):
-                                into[m] -= 2.0 * (b0 * of_position[m] + b1 * of_speed[m])
-                for to in range(n_touched):
-                    rows_of = by_sample[to]
-                    for a in range(6):
-                        b0 = basis[0, o_i, a]
-                        b1 = basis[1, o_i, a]
-                        into = by_controls[to, a]
-                        for m in range(9):
-                            into[m] += b0 * rows_of[m] + b1 * rows_of[9 + m]
-                    rows_of[:] = 0.0
-            for a in range(6):
-                c, z_sign = control_of(span_i, a, count, mirror)
-                for m in range(3):
-                    row_block[3 * a + m] = dof[row_i, c, m] // tile_size
-                    row_in[3 * a + m] = dof[row_i, c, m] % tile_size
-                    row_sign[3 * a + m] = sign[row_i, c, m] * (z_sign if m == 2 else 1.0)
-            for to in range(n_touched):
-                c2 = touched[to]
-                slot[c2] = -1
-                j2, k2 = c2 // count, c2 % count
-                for n in range(3):
-                    s2 = sign[j2, k2, n]
-                    if s2 == 0.0:
-                        continue
-                    block2 = dof[j2, k2, n] // tile_size
-                    o2 = dof[j2, k2, n] % tile_size
-                    for q in range(18):
-                        block1, o1 = row_block[q], row_in[q]
-                        value = row_sign[q] * s2 * by_controls[to, q // 3, 3 * (q % 3) + n]
-                        if block1 >= block2:
-                            tiles[where[block1, block2], o1, o2] += value
-                        else:
-                            tiles[where[block2, block1], o2, o1] += value
-                by_controls[to] = 0.0
-    for b in range(where.shape[0]):
-        _add_transposed(tiles[where[b, b]], tile_size)
-    for i in range(curve.shape[0]):
-        row_i = i // samples
-        span_i = (i % samples) // per_span
-        o_i = (i % samples) % per_span
-        for a in range(6):
-            c, z_sign = control_of(span_i, a, count, mirror)
-            b0 = basis[0, o_i, a]
-            b1 = basis[1, o_i, a]
-            for m in range(3):
-                r1 = dof[row_i, c, m]
-                s1 = sign[row_i, c, m] * (z_sign if m == 2 else 1.0)
-                for g in range(2):
-                    value = s1 * (b0 * cell_position[i, g, m] + b1 * cell_speed[i, g, m])
-                    sizes[g, r1] += value
+                    others[near] = j
+                    near += 1
+                filled = couple(couplings, filled, o_i, others[:near], columns[:near], layout)
+            end_span(couplings, filled, row_i, span_i, layout, tiles, where)
+    add_to_sizes(cell_position, cell_speed, layout, sizes)
     return sizes, position, position_speed

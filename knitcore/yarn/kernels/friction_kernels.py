@@ -14,7 +14,8 @@ import numpy as np
 from knitcore.base.arrays import Array
 from knitcore.base.compiled import compiled
 from knitcore.yarn.kernels.contact import apart
-from knitcore.yarn.kernels.curve_samples import control_of, laid_out
+from knitcore.yarn.kernels.couplings import add_to_sizes, couple, end_span, no_couplings
+from knitcore.yarn.kernels.curve_samples import laid_out
 from knitcore.yarn.kernels.potential import potential_and_derivatives
 from knitcore.yarn.kernels.structures import ContactLaw, Layout, Pairs
 
@@ -24,7 +25,8 @@ class Sliding(NamedTuple):
 
     Attributes
     ----------
-    pairs : see :data:`~knitcore.yarn.kernels.structures.Pairs`.
+    pairs : see :data:`~knitcore.yarn.kernels.structures.Pairs`, in the order of their first
+        samples.
     limit : (n,) coefficient of friction times normal force, N.
     rest : (n, 2) slides at which no friction acts, mm.
     scale : (n,) g, which makes |e| the slide whatever the angle of the strands.
@@ -125,77 +127,98 @@ def friction_slopes(
 
 
 @compiled
-def friction_hessian(  # noqa: PLR0912, PLR0915 - compiled: one pair at a time
+def friction_hessian(  # noqa: PLR0915 - one pair at a time, in one sweep
     curve: Array, course_mm: float, wale_mm: float, sliding: Sliding, layout: Layout,
-    speeds: Array, tiles: Array, where: Pairs, sizes: Array,
+    speeds: Array, local: Array, position: Array, position_speed: Array, tiles: Array,
+    where: Pairs, sizes: Array,
 ) -> None:  # fmt: skip
-    """Add the second derivatives by the unknowns to the tiles of a Hessian (see
-    :class:`~knitcore.yarn.kernels.tiles.TiledMatrix`) and to its rows of the two sizes."""
-    local, tile_size = layout.unknowns - 2, tiles.shape[1]
-    samples = layout.place.shape[0]
+    """Add the second derivatives to those of rod and contact.
+
+    ``local`` (n, 9, 9), ``position`` and ``position_speed`` (n, 3, 3) couple samples with
+    themselves, in d1, in x, and x with d1; tiles and sizes are those of ``contact_hessian``.
+    """
+    size, samples = layout.unknowns, layout.place.shape[0]
     per_span = layout.basis.shape[1]
     count = samples // per_span
     at = laid_out(curve, layout.place, course_mm, wale_mm)
     c, _ = slides(curve, course_mm, wale_mm, sliding.pairs, layout, speeds)
-    # every unknown moves one component of d, of d1 at i and of d1 at the image of j
-    unknown, component = np.empty(38, np.int64), np.empty(38, np.int64)
-    tile, within = np.empty(38, np.int64), np.empty(38, np.int64)
-    by = np.zeros((38, 3))
-    slope = np.empty((38, 2))
-    unknown[36], unknown[37] = layout.unknowns - 2, layout.unknowns - 1
-    component[36], component[37] = 0, 1
+    couplings = no_couplings(layout)
+    cell_position = np.zeros((curve.shape[0], 2, 3))
+    cell_speed = np.zeros((curve.shape[0], 2, 3))
+    d, b = np.empty(3), np.empty(3)
+    # second derivatives: by d twice, by d and the first d1, by d and the second
+    by_d, by_first, by_second = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    start = np.zeros(curve.shape[0] + 1, np.int64)
     for q in range(c.shape[0]):
-        if sliding.limit[q] <= 0.0:
-            continue
-        pair = sliding.pairs[q]
-        flip = float(pair[4])
-        by[:] = 0.0
-        for side in range(2):
-            s = pair[side]
-            row, span, o = s // samples, (s % samples) // per_span, (s % samples) % per_span
-            for a in range(6):
-                k, z_sign = control_of(span, a, count, layout.mirror)
-                for m in range(3):
-                    u = 18 * side + 3 * a + m
-                    unknown[u], component[u] = layout.dof[row, k, m], m
-                    sign = layout.sign[row, k, m]
-                    if m == 2:
-                        sign *= z_sign * (flip if side else 1.0)
-                    by[u, 0] = sign * layout.basis[0, o, a] * (1.0 if side else -1.0)
-                    by[u, 1 + side] = sign * layout.basis[1, o, a]
-        i, j = pair[0], pair[1]
-        by[36, 0] = at[j, 3] - at[i, 3] + layout.wales * pair[2]
-        by[36, 1] = by[36, 2] = 1.0
-        by[37, 0] = at[j, 4] - at[i, 4] + layout.rows * pair[3]
-        d = apart(at, sliding.pairs, q, layout, course_mm, wale_mm)
-        for u in range(38):
-            m = component[u]
-            fm = flip if m == 2 else 1.0
-            slope[u, 0] = (by[u, 0] * curve[i, 1, m] + d[m] * by[u, 1]) / speeds[i]
-            slope[u, 1] = (by[u, 0] * fm * curve[j, 1, m] + d[m] * by[u, 2]) / speeds[j]
-        g = sliding.scale[q]
-        e0, e1 = g * (c[q, 0] - sliding.rest[q, 0]), g * (c[q, 1] - sliding.rest[q, 1])
-        size = np.sqrt(e0 * e0 + e1 * e1)
-        pull = sliding.limit[q] * g / max(size, sliding.slip[q])
-        p0, p1 = pull * e0 / speeds[i], pull * e1 / speeds[j]
-        stiff = pull * g
-        # a pair that slips has no stiffness along its slide
-        h0, h1 = (e0 / size, e1 / size) if size > sliding.slip[q] else (0.0, 0.0)
-        for u in range(38):
-            tile[u], within[u] = unknown[u] // tile_size, unknown[u] % tile_size
-        for u in range(38):
-            s0 = stiff * ((1.0 - h0 * h0) * slope[u, 0] - h0 * h1 * slope[u, 1])
-            s1 = stiff * ((1.0 - h1 * h1) * slope[u, 1] - h0 * h1 * slope[u, 0])
-            first = p0 * by[u, 1] + p1 * by[u, 2]
-            row = unknown[u]
-            for v in range(38):
-                column = unknown[v]
-                if row < local and (column >= local or tile[u] < tile[v]):
+        start[sliding.pairs[q, 0] + 1] += 1
+    most = start.max()
+    start = np.cumsum(start)
+    others, columns = np.empty(most, np.int64), np.empty((most, 2, 18))
+    for span in range(layout.rows * count):
+        filled = 0
+        for o in range(per_span):
+            i = span * per_span + o
+            a = curve[i, 1]
+            near = 0
+            for q in range(start[i], start[i + 1]):
+                j, flip = sliding.pairs[q, 1], float(sliding.pairs[q, 4])
+                across = at[j, 3] - at[i, 3] + layout.wales * sliding.pairs[q, 2]
+                up = at[j, 4] - at[i, 4] + layout.rows * sliding.pairs[q, 3]
+                d[0], d[1], d[2] = apart(at, sliding.pairs, q, layout, course_mm, wale_mm)
+                b[0], b[1], b[2] = curve[j, 1, 0], curve[j, 1, 1], flip * curve[j, 1, 2]
+                g = sliding.scale[q]
+                e0, e1 = g * (c[q, 0] - sliding.rest[q, 0]), g * (c[q, 1] - sliding.rest[q, 1])
+                length = np.sqrt(e0 * e0 + e1 * e1)
+                pull = sliding.limit[q] * g / max(length, sliding.slip[q])
+                if pull <= 0.0:
                     continue
-                value = s0 * slope[v, 0] + s1 * slope[v, 1]
-                if component[u] == component[v]:
-                    value += first * by[v, 0] + by[u, 0] * (p0 * by[v, 1] + p1 * by[v, 2])
-                if row >= local:
-                    sizes[row - local, column] += value
-                elif where[tile[u], tile[v]] >= 0:
-                    tiles[where[tile[u], tile[v]], within[u], within[v]] += value
+                # a pair that slips has no stiffness along its slide
+                h0, h1 = (e0 / length, e1 / length) if length > sliding.slip[q] else (0.0, 0.0)
+                p0, p1 = pull * e0 / speeds[i], pull * e1 / speeds[j]
+                first = pull * g * (1.0 - h0 * h0) / (speeds[i] * speeds[i])
+                mixed = -pull * g * h0 * h1 / (speeds[i] * speeds[j])
+                second = pull * g * (1.0 - h1 * h1) / (speeds[j] * speeds[j])
+                for m in range(3):
+                    with_first = first * a[m] + mixed * b[m]
+                    with_second = mixed * a[m] + second * b[m]
+                    for n in range(3):
+                        same = 1.0 if m == n else 0.0
+                        by_d[m, n] = with_first * a[n] + with_second * b[n]
+                        by_first[m, n] = with_first * d[n] + p0 * same
+                        by_second[m, n] = with_second * d[n] + p1 * same
+                for m in range(3):
+                    fm = flip if m == 2 else 1.0
+                    for n in range(3):
+                        fn = flip if n == 2 else 1.0
+                        position[i, m, n] += by_d[m, n]
+                        position[j, m, n] += fm * fn * by_d[m, n]
+                        position_speed[i, m, n] -= by_first[m, n]
+                        position_speed[j, m, n] += fm * fn * by_second[m, n]
+                        local[i, m, n] += first * d[m] * d[n]
+                        local[j, m, n] += fm * fn * second * d[m] * d[n]
+                        columns[near, 0, 3 * m + n] = -fn * by_d[m, n]
+                        columns[near, 0, 9 + 3 * m + n] = fn * by_first[n, m]
+                        columns[near, 1, 3 * m + n] = -fn * by_second[m, n]
+                        columns[near, 1, 9 + 3 * m + n] = fn * mixed * d[m] * d[n]
+                    course = by_d[m, 0] * across + by_first[m, 0] + by_second[m, 0]
+                    wale = by_d[m, 1] * up
+                    cell_position[i, 0, m] -= course
+                    cell_position[i, 1, m] -= wale
+                    cell_position[j, 0, m] += fm * course
+                    cell_position[j, 1, m] += fm * wale
+                    cell_speed[i, 0, m] += by_first[0, m] * across + mixed * d[m] * d[0]
+                    cell_speed[j, 0, m] += fm * (by_second[0, m] * across + mixed * d[m] * d[0])
+                    cell_speed[i, 1, m] += by_first[1, m] * up
+                    cell_speed[j, 1, m] += fm * by_second[1, m] * up
+                both = by_first[0, 0] + by_second[0, 0]
+                sizes[0, size - 2] += (by_d[0, 0] * across + 2.0 * both) * across
+                sizes[0, size - 2] += 2.0 * mixed * d[0] * d[0]
+                shear = (by_d[0, 1] * across + by_first[1, 0] + by_second[1, 0]) * up
+                sizes[0, size - 1] += shear
+                sizes[1, size - 2] += shear
+                sizes[1, size - 1] += by_d[1, 1] * up * up
+                others[near] = j
+                near += 1
+            filled = couple(couplings, filled, o, others[:near], columns[:near], layout)
+        end_span(couplings, filled, span // count, span % count, layout, tiles, where)
+    add_to_sizes(cell_position, cell_speed, layout, sizes)

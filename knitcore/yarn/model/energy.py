@@ -12,6 +12,7 @@ from knitcore.base.arrays import Array, sum_in_order
 from knitcore.base.threads import on_halves
 from knitcore.linear.dense import dot, times
 from knitcore.yarn.kernels.contact import contact_energy, contact_hessian, contact_slopes
+from knitcore.yarn.kernels.couplings import add_transposed
 from knitcore.yarn.kernels.curve_samples import laid_out, sample_curve
 from knitcore.yarn.kernels.friction_kernels import (
     Sliding,
@@ -338,9 +339,11 @@ class CellEnergy:
         sizes, position, position_speed = contact_hessian(
             curve, state[-2], state[-1], pairs, start, layout, law, matrix.tiles, matrix.where
         )
-        scatter_local(local, position, position_speed, layout, matrix.tiles, matrix.where, sizes)
+        own = local, position, position_speed
         if self.sliding is not None:
-            friction_hessian(*rubbing, matrix.tiles, matrix.where, sizes)
+            friction_hessian(*rubbing, *own, matrix.tiles, matrix.where, sizes)
+        add_transposed(matrix.tiles, matrix.where)
+        scatter_local(*own, layout, matrix.tiles, matrix.where, sizes)
         sizes[:, -2:] = 0.5 * (sizes[:, -2:] + sizes[:, -2:].T)
         if sparse:
             return Slope(gradient, rows, sparse=SparseHessian(touching, matrix, sizes))
