@@ -23,6 +23,7 @@ from knitcore.chart.result import Result
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.read.chart_files import PieceInFile
+from knitcore.formats.write.export import ExportedFile
 from knitcore.machine.program import KnitoutProgram
 from knitcore.materials import Interval
 from knitcore.prediction.learned import LearnedModel
@@ -100,7 +101,9 @@ def test_a_wrong_argument_is_refused_with_what_to_give(name: str, parameter: str
             assert error.remedy.endswith("."), error  # noqa: PT017
 
 
-NO_RESULTS = {StitchChart, SymbolChart, Interval, KnitoutProgram, LearnedModel, PieceInFile}
+NO_RESULTS = {
+    StitchChart, SymbolChart, Interval, KnitoutProgram, LearnedModel, PieceInFile, ExportedFile
+}  # fmt: skip
 """Kinds that functions return, but that are inputs, a pair of numbers, a model, or the content of a
 file."""
 

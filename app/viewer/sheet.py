@@ -33,7 +33,7 @@ CLOSED = 5
 SOFT = 0.9
 """Standard deviation in pixels by which a picture is blurred, or loops and pixels would beat."""
 QUALITY = 90
-"""Of pictures on their way to browsers, 0 to 100."""
+"""Quality of pictures on their way to browsers, 0 to 100."""
 SHIFTS = np.array([0.7549, 0.5698])
 """Pixels by which stitches are shifted from row to row, and from column to column, without their
 whole part (Roberts's evenly spread sequence): loops would slowly fall out of step with pixels and
