@@ -51,7 +51,7 @@ class AnyStitchesRequest(StitchRequest):
     def others(self) -> SymbolChart | None:
         """The repeat, if it has other stitches than knits and purls."""
         chart = None if isinstance(self.chart, PureFabricChart) else to_stitches(self.chart)
-        return chart if isinstance(chart, SymbolChart) else None
+        return chart.repeat() if isinstance(chart, SymbolChart) else None
 
     def check_parts(self, context: Context) -> None:
         """Refuse besides what is for charts of knits and purls only."""

@@ -230,6 +230,11 @@ class SymbolChart:
         check_chart_size(self.rows * down, self.columns * across)
         return SymbolChart(np.tile(self.cells, (down, across)))
 
+    def repeat(self) -> SymbolChart:
+        """The smallest repeat of which this chart has whole ones."""
+        rows, columns = (period(grid) for grid in (self.cells, self.cells.T))
+        return SymbolChart(self.cells[:rows, :columns])
+
     def repeat_cut(self) -> SymbolChart:
         """The smallest repeat whose periodic continuation, cut anywhere, gives this chart.
 

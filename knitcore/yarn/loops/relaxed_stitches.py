@@ -17,6 +17,7 @@ from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.chart.stitch_graph import StitchGraph
 from knitcore.chart.stitch_kinds import YarnAct
 from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.chart_images import ChartImage
 from knitcore.yarn.loops.drawn_yarn import DrawnYarn
 from knitcore.yarn.loops.holes import holes, is_folded
 from knitcore.yarn.loops.stitch_energy import StitchEnergy, YarnPerAct
@@ -87,6 +88,7 @@ class RelaxedStitches(Result):
     Attributes
     ----------
     chart : the repeat, at least two stitches each way.
+    image : the image that was relaxed in its place.
     yarn : the yarn.
     loop_lengths_mm : (rows,) yarn per site of each row, bottom first.
     history, friction : how it came to rest; no friction where it was agitated.
@@ -105,11 +107,12 @@ class RelaxedStitches(Result):
     seconds : CPU time, s.
     converged : whether the solver reached its tolerance.
     centre_lines : (rows, points, 3) of the yarn, mm, once across the repeat, bottom row first.
-    state : the yarn at rest with the friction that holds it, from which it can be pulled on.
+    state : the yarn of the image at rest with the friction that holds it, to be pulled on.
     notes : remarks for the user.
     """
 
     chart: SymbolChart
+    image: ChartImage
     yarn: YarnModel
     loop_lengths_mm: Array
     history: StitchHistory
@@ -132,7 +135,7 @@ class RelaxedStitches(Result):
     notes: tuple[str, ...] = (CAUTION,)
 
     also_listed: ClassVar = ("pattern",)
-    not_listed: ClassVar = ("state",)
+    not_listed: ClassVar = ("image", "state")
 
     @property
     def pattern(self) -> str:
@@ -182,7 +185,7 @@ def relax_stitches(
 
     Parameters
     ----------
-    chart : the repeat, at most 36 stitches.
+    chart : the repeat, or any number of repeats; at most 36 stitches in one.
     yarn : the yarn.
     loop_length_mm : yarn of a knit.
     history : what the cloth went through.
@@ -203,11 +206,13 @@ def relax_stitches(
     kind = StitchHistory.parse(history)
     check_coefficient(friction)
     check_loop(yarn, loop_length_mm)
+    chart = chart.repeat()
     whole = chart.tile(2 if chart.rows == 1 else 1, 2 if chart.columns == 1 else 1)
     check_stitches(whole.rows * whole.columns, MAX_STITCHES, "its repeat")
     compile_kernels()
     clock = time.process_time()
-    graph = whole.graph
+    image = ChartImage.least(whole)
+    graph = image.chart.graph
     drawn = _knotted(room_for_yarn(graph, yarn, loop_length_mm))
     lengths = loop_length_mm * (per_act or YarnPerAct()).of_rows(graph)
     take_down = TakeDown(yarn, Convention.parse(convention), lengths, cancelled)
@@ -229,8 +234,9 @@ def relax_stitches(
     )  # fmt: skip
     return RelaxedStitches(
         chart=whole,
+        image=image,
         yarn=yarn,
-        loop_lengths_mm=lengths,
+        loop_lengths_mm=image.rows_back(lengths),
         history=kind,
         friction=None if kind is StitchHistory.AGITATED else friction,
         cell_course_mm=course,
@@ -246,7 +252,7 @@ def relax_stitches(
         min_distance_mm=minimum.min_distance_mm,
         seconds=seconds,
         converged=minimum.converged,
-        centre_lines=lines,
+        centre_lines=image.lines_back(lines, course, wale),
         state=RubbedCell(StitchRepeat(**vars(plain)), rubbing, 0.0),
         notes=notes,
     )

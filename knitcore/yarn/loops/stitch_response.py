@@ -62,7 +62,10 @@ def bend_stitches(rest: RelaxedStitches) -> FabricBending:
         "Bending is computed without friction, which alone keeps it flat: measure a strip that "
         "hangs over an edge.",
     )
-    return bending_response(rest.state.cell)
+    bent, image = bending_response(rest.state.cell), rest.image
+    if image.turned:
+        bent = bent.swapped()
+    return bent.mirror_image() if image.mirrored != image.turned else bent
 
 
 def _check_unfolded(rest: RelaxedStitches, remedy: str) -> None:

@@ -1,16 +1,20 @@
 """Repeats of any stitches at rest."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
+from hypothesis import given, settings
 
 from knitcore.base.errors import ConvergenceError, InputError
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.yarn.loops.relaxed_stitches import RelaxedStitches, StitchHistory, relax_stitches
 from knitcore.yarn.loops.stitch_energy import YarnPerAct
+from knitcore.yarn.solve.clasps import cell_is_knitted
 from knitcore.yarn.study.relax import relax
+from tests.knitcore.symbol_charts import symbol_charts
 from tests.knitcore.yarn.random_charts import ACRYLIC, LOOP_MM
 
 
@@ -79,3 +83,27 @@ def test_yarn_that_locks_is_refused_with_a_remedy() -> None:
 @pytest.mark.parametrize("text", ["[2/2L];KKKK;KKKK;KKKK", "//OO;KKKK", "O^OK;KKKK"])
 def test_cables_and_wide_lace_come_to_rest(text: str) -> None:
     assert at_rest(text, StitchHistory.BLOCKED).converged
+
+
+def test_two_repeats_rest_like_one() -> None:
+    chart = SymbolChart.parse("VK;KK")
+    once, twice = (relax_stitches(of, ACRYLIC, LOOP_MM) for of in (chart, chart.tile(4, 8)))
+    assert sizes(twice) == sizes(once)
+    assert twice.pattern == once.pattern
+    assert SymbolChart.parse("VKV;KKK").repeat() == SymbolChart.parse("VKV;KKK")
+
+
+@pytest.mark.slow
+@settings(max_examples=5)
+@given(chart=symbol_charts(most_rows=2, most_columns=4, drawn=True))
+def test_what_passes_through_what_stays(chart: SymbolChart) -> None:
+    """The yarn at rest is knotted as in the first shape, which has all crossings of the chart."""
+    try:
+        rest = relax_stitches(chart, ACRYLIC, LOOP_MM)
+    except ConvergenceError:  # of random charts some lock; the message has the remedy
+        return
+    cell = rest.state.cell
+    assert cell_is_knitted(cell.cell, cell.state)
+    other = replace(cell.cell, code=tuple(1.01 * part + 0.1 for part in cell.cell.code or ()))
+    assert not cell_is_knitted(other, cell.state)
+    assert rest.min_distance_mm > 2.0 * ACRYLIC.core_radius_mm

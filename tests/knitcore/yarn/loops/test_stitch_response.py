@@ -40,3 +40,12 @@ def test_friction_is_not_bent() -> None:
     rest = relax_stitches(SymbolChart.parse("B"), ACRYLIC, LOOP_MM)
     with refuses("history", "friction"):
         bend_stitches(rest)
+
+
+def test_a_cloth_that_is_turned_over_curls_the_other_way() -> None:
+    face, back = (
+        bend_stitches(relax_stitches(SymbolChart.parse(text), ACRYLIC, LOOP_MM, history="agitated"))
+        for text in ("B", "b")
+    )
+    assert face.wale.moment_n == -back.wale.moment_n != 0.0
+    assert face.course.rigidity_n_mm == back.course.rigidity_n_mm
