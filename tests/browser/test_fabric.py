@@ -345,6 +345,7 @@ def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> N
     expect(flat_studio.locator(".pressure-plot")).to_be_attached()
 
 
+@pytest.mark.slow
 def test_a_test_can_be_cancelled(flat_studio: Page) -> None:
     flat_studio.route("**/api/v1/jobs/*/events", lambda route: None)  # its end is never heard
     flat_studio.click("#stretch-run")

@@ -307,6 +307,7 @@ def test_no_part_is_farther_from_its_target_in_many_charts(
         check_no_part_is_farther(pieces(seed), seed)
 
 
+@pytest.mark.slow
 def test_each_part_has_its_own_repeat() -> None:
     """Also where parts touch, and one of them is reached only if the other stays."""
     knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 16, 16)

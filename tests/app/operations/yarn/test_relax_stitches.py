@@ -9,6 +9,7 @@ from tests.app.rest import post, refusal
 MESH = "O/;KK"
 
 
+@pytest.mark.slow
 def test_a_mesh_is_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
     shape = run("relax-stitches", MESH, "--material", "acrylic")
     assert shape["converged"]
