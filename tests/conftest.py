@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, Phase, settings
 settings.register_profile(
     "knitcore",
     deadline=None,  # how long an example takes is no property
+    max_examples=50,
     derandomize=True,  # a suite that was green stays green
     phases=set(Phase) - {Phase.explain},  # its trace of what failed may never end on Python 3.11
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],

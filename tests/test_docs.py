@@ -37,6 +37,9 @@ MORE_PAGES = [
     *ROOT.glob("examples/*/README.md"),
 ]
 NOTEBOOKS = ROOT / "docs" / "notebooks"
+"""Pages that the site runs when it is built."""
+LONG = ("fit-a-law.md", "inverse-design.md")
+"""Pages whose examples take seconds."""
 MADE = (ROOT / "docs" / "reference", ROOT / "docs" / "gallery.md")
 """Pages of the site that are made from code; the strict build checks links to them."""
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -56,11 +59,14 @@ def _id(page: Path) -> str:
 
 
 def _with_examples(page: Path) -> object:
-    marks = [pytest.mark.slow] if page.parent == NOTEBOOKS else []
+    marks = [pytest.mark.slow] if page.name in LONG else []
     return pytest.param(page, marks=marks, id=_id(page))
 
 
-@pytest.mark.parametrize("page", [_with_examples(p) for p in PAGES if FENCE.search(p.read_text())])
+@pytest.mark.parametrize(
+    "page",
+    [_with_examples(p) for p in PAGES if p.parent != NOTEBOOKS and FENCE.search(p.read_text())],
+)
 def test_examples_run(page: Path) -> None:
     _printed(page)
 

@@ -125,6 +125,7 @@ def test_a_head_that_is_too_large_is_refused(
     assert answer == b"" or answer.startswith(b"HTTP/1.1 " + status)
 
 
+@pytest.mark.slow
 def test_an_unread_answer_is_closed(url: str, connection: socket.socket) -> None:
     whole = httpx.get(
         f"{url}/openapi.json", headers={"Accept-Encoding": "identity"}, timeout=PATIENCE_S

@@ -4,6 +4,7 @@ import ast
 import importlib.util
 import re
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -48,14 +49,18 @@ their commands with ``app.cli.options``.
 """
 
 
-def imports(file: Path) -> set[str]:
+CLASS = re.compile(r"^class (\w+)", re.MULTILINE)
+
+
+@cache
+def imports(file: Path) -> frozenset[str]:
     modules: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             modules |= {node.module} | {f"{node.module}.{name.name}" for name in node.names}
         elif isinstance(node, ast.Import):
             modules |= {name.name for name in node.names}
-    return modules
+    return frozenset(modules)
 
 
 ROOMS = sorted(
@@ -100,12 +105,8 @@ def test_no_two_modules_of_the_library_have_one_name() -> None:
 
 def test_a_name_of_a_class_means_one_thing() -> None:
     """Names for use within a module begin with an underscore, and do not count."""
-    trees = [
-        ast.parse(file.read_text(encoding="utf-8"))
-        for top in ("knitcore", "app")
-        for file in (ROOT / top).rglob("*.py")
-    ]
-    names = [node.name for tree in trees for node in tree.body if isinstance(node, ast.ClassDef)]
+    files = [file for top in ("knitcore", "app") for file in (ROOT / top).rglob("*.py")]
+    names = [name for file in files for name in CLASS.findall(file.read_text(encoding="utf-8"))]
     public = Counter(name for name in names if not name.startswith("_"))
     assert [name for name, count in public.items() if count > 1] == []
 

@@ -42,6 +42,12 @@ PAGE_PARAMETER = re.compile(rf"@param \{{.*?\}} \[?({'|'.join(sorted(VAGUE))})\b
 PAGE_PROSE = re.compile(r"/\*.*?\*/|(?<![:\\])//[^\n]*|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
 """Comments and strings of the page's code."""
 
+NAMES: dict[type[ast.AST], str] = {
+    ast.Name: "id", ast.Attribute: "attr", ast.arg: "arg", ast.FunctionDef: "name",
+    ast.AsyncFunctionDef: "name", ast.ClassDef: "name",
+}  # fmt: skip
+"""Nodes that make a name, and their field for it."""
+
 ALLOWED: dict[str, dict[str, int]] = {}
 """Faults that each folder may still have, by rule."""
 
@@ -94,16 +100,9 @@ def faults_of_code(file: Path) -> Iterator[Fault]:
 
 def bound_name(node: ast.AST) -> str:
     """The name of the variable, parameter, attribute, function or class that a node makes."""
-    match node:
-        case (
-            ast.Name(id=name, ctx=ast.Store())
-            | ast.Attribute(attr=name, ctx=ast.Store())
-            | ast.arg(arg=name)
-            | ast.FunctionDef(name=name)
-            | ast.ClassDef(name=name)
-        ):
-            return name
-    return ""
+    if isinstance(getattr(node, "ctx", None), ast.Load):
+        return ""
+    return str(getattr(node, NAMES.get(type(node), ""), ""))
 
 
 def page_files() -> Iterator[Path]:

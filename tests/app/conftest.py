@@ -69,6 +69,10 @@ BOTH = ["sqlite", pytest.param("postgres", marks=pytest.mark.postgres)]
 """The same tests on both databases; ``make test-hard`` runs those on PostgreSQL."""
 
 
+MOSTLY_SQLITE = ["sqlite", pytest.param("postgres", marks=[pytest.mark.postgres, pytest.mark.slow])]
+"""Both databases, for tests that hardly depend on which, or wait for it often."""
+
+
 @pytest.fixture(params=BOTH)
 def database(request: pytest.FixtureRequest) -> Database:
     """An empty database with its tables."""

@@ -153,6 +153,7 @@ def test_knitout_is_checked_and_a_pattern_has_a_picture_where_nothing_is_drawn_i
     assert "data:image/png" in pattern.path().read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_options_and_result_are_in_sight_with_the_last_format(flat_studio: Page) -> None:
     page = flat_studio
     for width, height in ((1280, 720), (820, 1180), (390, 844)):

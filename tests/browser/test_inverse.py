@@ -136,6 +136,7 @@ def fill_softer(page: Page, service: str) -> Route:
     return when_held(page, waiting)
 
 
+@pytest.mark.slow
 def test_each_part_is_judged_in_a_sentence(visitor: Page, service: str) -> None:
     page = flat(visitor)
     fill_softer(page, service).continue_()
@@ -188,6 +189,7 @@ def test_a_fill_leaves_what_is_painted_meanwhile(visitor: Page, service: str) ->
     assert kept_chart(page) == CHART
 
 
+@pytest.mark.slow
 def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:
     """A 2x2 rib lies just above the 1x1 rib."""
     flat_studio.evaluate(
@@ -212,6 +214,7 @@ def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:
     assert abs(y - y1) > 13 or abs(x - x1) > (wide + wide1) / 2
 
 
+@pytest.mark.slow
 def test_how_far_a_fill_is_stays_in_sight_below_many_parts(flat_studio: Page) -> None:
     for slow in ("predict", "jobs/*/events"):
         flat_studio.route(f"**/api/v1/{slow}", lambda route: None)  # its end is never heard

@@ -18,6 +18,7 @@ def opened(page: Page) -> Page:
     return page
 
 
+@pytest.mark.slow
 def test_the_row_at_hand_is_large_and_kept(visitor: Page, service: str) -> None:
     page = opened(open_small_chart(flat(visitor), service, CHART))
     page.set_viewport_size(PHONE)

@@ -224,6 +224,7 @@ def test_a_target_for_a_region_fills_only_that_region(visitor: Page, service: st
     assert inner == {"KKKKK", "PPPPP"}
 
 
+@pytest.mark.slow
 def test_a_target_for_a_selection_fills_only_the_selection(visitor: Page, service: str) -> None:
     garter = material("acrylic").law(Fabric.GARTER)
     page = open_design(visitor, service, outline=WAISTED)
@@ -260,6 +261,7 @@ def fill_first_part(page: Page, law: ConstitutiveLaw) -> None:
     page.click("#fill-keep")
 
 
+@pytest.mark.slow
 def test_what_a_chart_is_too_large_for_is_said_before_the_button(
     visitor: Page, service: str
 ) -> None:

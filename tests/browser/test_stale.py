@@ -115,6 +115,7 @@ def wait_for_atlas(page: Page) -> None:
     page.wait_for_function("() => +document.querySelector('.inverse-plot')?.dataset.count > 50")
 
 
+@pytest.mark.slow
 def test_numbers_come_with_the_title_of_their_part(visitor: Page, service: str) -> None:
     """Also where one region is chosen after another."""
     parts = [("Wide", [[0, 0, 9]]), ("High", [[row, 0, 2] for row in range(8)])]
@@ -157,6 +158,7 @@ def test_the_atlas_of_the_yarn_before_is_not_of_the_yarn_now(flat_studio: Page) 
     expect(page.locator("#atlas-apply")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_no_picture_is_taken_of_the_cloth_before_a_change(flat_studio: Page) -> None:
     page, chart = flat_studio, Chart(flat_studio)
     with sent_view(page):

@@ -9,7 +9,7 @@ from knitcore.yarn.library.store import document_of, stored_stitch
 from scripts.from_store import FILES, StoredTask, bend, follow
 
 
-@pytest.mark.parametrize("text", ["K", "P/K", "KKKKP"])
+@pytest.mark.parametrize("text", ["K", "P/K", pytest.param("KKKKP", marks=pytest.mark.slow)])
 def test_a_stored_repeat_is_bent_as_stored(text):
     """Without its mirrors KKKKP goes to a shape that only a finer grid holds."""
     stored = stored_stitch(StitchChart.parse(text), "cotton")

@@ -40,6 +40,7 @@ def _cache(folder: Path) -> dict[str, str]:
     return {"NUMBA_CACHE_DIR": str(folder)}
 
 
+@pytest.mark.slow
 def test_only_a_command_says_that_it_compiles_and_only_when_it_does(tmp_path: Path) -> None:
     ours, theirs = tmp_path / "ours", tmp_path / "theirs"
     for folder in (ours, theirs):

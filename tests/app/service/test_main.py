@@ -216,6 +216,7 @@ def test_readiness_waits_for_what_requests_wait_for(
         assert client.get("/readyz").status_code == 200
 
 
+@pytest.mark.slow
 def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     service = Service(tmp_path, log_format="json")
     client = service.start()

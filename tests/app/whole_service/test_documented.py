@@ -18,7 +18,7 @@ from hypothesis.errors import Unsatisfiable
 
 from tests.app.running import Service
 
-EXAMPLES = int(os.environ.get("KNITCORE_SCHEMA_EXAMPLES", "4"))
+EXAMPLES = int(os.environ.get("KNITCORE_SCHEMA_EXAMPLES", "2"))
 
 
 @pytest.fixture(scope="module")

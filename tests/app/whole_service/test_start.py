@@ -65,6 +65,7 @@ def test_what_workers_run_is_declared_without_its_solvers() -> None:
     assert not SOLVERS & set(python("-c", f"{code}; print(*sys.modules)").stdout.split())
 
 
+@pytest.mark.slow
 def test_no_request_waits_while_python_looks_for_garbage_in_what_is_loaded() -> None:
     looked_through, left_out = map(int, python("-c", READY).stdout.split())
     assert looked_through < left_out / 10

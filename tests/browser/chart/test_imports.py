@@ -129,6 +129,7 @@ def test_a_photo_becomes_the_same_chart_on_the_page_and_on_the_command_line(
         assert kept_chart(page) == expected.strip()
 
 
+@pytest.mark.slow
 def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:
     before = kept_design(flat_studio)
     messages = flat_studio.locator("#messages")

@@ -1,11 +1,13 @@
 """Tools, keys and selections on the chart."""
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import wait_for_numbers
 from tests.browser.page import drag, kept_chart
 
 
+@pytest.mark.slow
 def test_selection_shows_numbers_of_its_own(flat_studio: Page) -> None:
     flat_studio.click("#tool-select")
     drag(flat_studio, 70, 40)

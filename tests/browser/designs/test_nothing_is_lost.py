@@ -1,5 +1,6 @@
 """Reloads, bad input and an absent service leave the painting alone and say what to do."""
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import CHART, wait_for_numbers
@@ -55,6 +56,7 @@ def test_a_yarn_that_was_begun_outlasts_its_dialog(flat_studio: Page) -> None:
         flat_studio.keyboard.press("Escape")
 
 
+@pytest.mark.slow
 def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "390")
     flat_studio.click("#stretch-run")

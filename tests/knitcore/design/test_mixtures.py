@@ -19,6 +19,7 @@ def test_one_target_alone_is_enough(mixer: Mixer) -> None:
     assert mixture.modulus_course_n_per_mm == pytest.approx(0.1, rel=0.05)
 
 
+@pytest.mark.slow
 def test_mixtures_fit_their_room(mixer: Mixer) -> None:
     mixture = mixer.nearest(0.1, 0.1, most_rows=4, most_columns=5)
     assert mixture.repeat.rows <= 4

@@ -47,6 +47,7 @@ def test_the_same_seed_gives_the_same_chart() -> None:
     assert fill(target, seed=4).chart == fill(target, seed=4).chart
 
 
+@pytest.mark.slow
 def test_a_column_profile_under_a_course_wise_pull() -> None:
     target = np.full(20, np.nan)
     target[10] = 0.9

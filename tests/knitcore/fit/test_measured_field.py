@@ -31,6 +31,7 @@ def test_a_synthetic_field_is_read_back() -> None:
         assert max(f.uy_rms_percent_width for f in errors) < 0.06
 
 
+@pytest.mark.slow
 def test_calibration_finds_the_law_of_a_synthetic_field() -> None:
     truth = replace(GARTER, shear_modulus=0.03, kappa_xx=0.4, kappa_yy=0.4)
     fit = calibrate(synthetic_field(truth), GARTER, Direction.WALE)

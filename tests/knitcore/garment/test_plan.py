@@ -167,6 +167,7 @@ def test_a_glove_is_written_and_read_back() -> None:
     assert read_piece_rows(write_rows(piece)) == piece
 
 
+@pytest.mark.slow
 def test_a_glove_is_knitted_by_the_machine_in_four_yarns() -> None:
     """In a coarse gauge, so that it has few stitches."""
     own = GaugeSet.of_material(WOOL)[Fabric.STOCKINETTE]

@@ -97,6 +97,7 @@ def test_racking_beyond_two_needles_is_where_the_risk_begins() -> None:
     assert chances[4] >= BREAK_CHANCE
 
 
+@pytest.mark.slow
 def test_more_yarn_in_the_stitch_lets_a_cable_pass() -> None:
     wide = replace(KNITERATE, racking=replace(KNITERATE.racking, most_needles=4))
     with pytest.raises(InputError, match="loops of") as error:

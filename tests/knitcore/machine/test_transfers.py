@@ -198,7 +198,13 @@ def check_against_all_passes(moves: Sequence[LoopMove], most_rack: int, spare: i
         assert arrivals == sorted(arrivals)
 
 
-@pytest.mark.parametrize("shifts", list(product((-1, 0, 1), repeat=4)))
+@pytest.mark.parametrize(
+    "shifts",
+    [
+        pytest.param(shifts, marks=[pytest.mark.slow] if number % 4 else [])
+        for number, shifts in enumerate(product((-1, 0, 1), repeat=4))
+    ],
+)
 def test_four_loops_by_up_to_a_needle_take_the_fewest_passes(shifts: tuple[int, ...]) -> None:
     check_against_all_passes(shifted(shifts, layers=shifts), 1)
 
@@ -211,6 +217,7 @@ def test_three_loops_by_up_to_two_needles_take_the_fewest_passes(
     check_against_all_passes(shifted(shifts), 2, spare)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shifts", [(0, 1, 0, -1, 0), (1, 1, 0, 0, -1), (0, 1, -1, 1, -1)])
 def test_five_loops_take_the_fewest_passes(shifts: tuple[int, ...]) -> None:
     check_against_all_passes(shifted(shifts), 1)

@@ -83,6 +83,7 @@ def test_coarsening_keeps_layers_exactly():
     )
 
 
+@pytest.mark.slow
 def test_coarsening_is_close_for_noise():
     """32 x 32 random stitches: the coarsened grid against all 4096 quarter cells."""
     yarn = material("acrylic")

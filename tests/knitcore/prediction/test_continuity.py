@@ -43,8 +43,7 @@ def test_one_stitch_counts_as_one_stitch(text: str, side: int) -> None:
     assert max(change(*one_stitch(text, side))) < (31 if side <= 32 else 39) / side**2
 
 
-@pytest.mark.parametrize("name", ["cotton", "lace-cashmere"])
-@pytest.mark.parametrize("side", [16, 32])
+@pytest.mark.parametrize(("name", "side"), [("cotton", 16), ("lace-cashmere", 32)])
 @pytest.mark.parametrize("text", CLOTHS)
 def test_one_stitch_counts_as_one_in_other_yarns(text: str, side: int, name: str) -> None:
     numbers, widths = change(*one_stitch(text, side), name)

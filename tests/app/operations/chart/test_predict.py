@@ -38,6 +38,7 @@ def test_garter_is_the_papers(client: TestClient) -> None:
     assert post(client, "predict", body) == result
 
 
+@pytest.mark.slow
 def test_the_pull_of_a_hand_is_told_if_asked_for(client: TestClient) -> None:
     body = {"chart": "KKPP", "material": "acrylic"}
     assert post(client, "predict", body)["hand"] == []

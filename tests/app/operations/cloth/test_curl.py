@@ -52,6 +52,7 @@ def test_a_first_shape_begins_at_an_old_one(client: TestClient) -> None:
     assert depth_mm(chart="KKKK\nKKKK", **after) == depth_mm(chart="KKKK\nKKKK")
 
 
+@pytest.mark.slow
 def test_a_piece_with_a_hole_over_rest_as_a_solid_and_hanging(client: TestClient) -> None:
     outline = "\n".join(["xxxxxxxx", *["xx....xx"] * 4, "xxxxxxxx"])
     chart = {"fabric": "seed", "columns": 8, "rows": 6}

@@ -56,6 +56,7 @@ def test_force_waist_and_stitches_have_intervals(client: TestClient) -> None:
     assert answer["stitch_fields"]["strain_course_interval"] is None
 
 
+@pytest.mark.slow
 def test_intervals_between_the_computed_steps_are_as_computed(client: TestClient) -> None:
     chart = "\n".join(["KPKPKKKK"] * 4 + ["KKKKPKPK"] * 4)
     many, few = (pulled(client, chart=chart, steps=steps) for steps in (20, 4))

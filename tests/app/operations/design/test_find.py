@@ -71,6 +71,7 @@ def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
     assert run("find", *options, *(f"--target={target}" for target in written)) == answer
 
 
+@pytest.mark.slow
 def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
     box = [[row, 0, 8] for row in range(8)]
     targets = [

@@ -21,6 +21,7 @@ def upload(name: str) -> dict[str, Any]:
     return {"file": {"name": name, "content": base64.b64encode(b"KP\nPK\n").decode()}}
 
 
+@pytest.mark.slow
 def test_the_service_refuses_a_file_that_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its worker goes on to the next file."""
 

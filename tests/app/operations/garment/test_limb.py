@@ -38,6 +38,7 @@ def test_the_answer_says_where_the_pressure_of_a_hem_steps(client: TestClient) -
     assert any("at a hem" in note for note in hemmed)
 
 
+@pytest.mark.slow
 def test_a_whole_chart_is_worn_and_shown(client: TestClient) -> None:
     sleeve = post(client, "limb", TUBE)
     assert len(sleeve["places"]) == 6

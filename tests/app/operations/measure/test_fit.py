@@ -24,6 +24,7 @@ def tests(tmp_path: Path) -> list[Path]:
     return [write_csv(tmp_path / f"{d}.csv", d, noise=0.01) for d in Direction]
 
 
+@pytest.mark.slow
 def test_fit_gives_eight_constants_with_errors(client: TestClient, tests: list[Path]) -> None:
     fitted = run("fit", *tests, "--reduction", "published")
     assert set(fitted) >= CONSTANTS | {"poisson_yx", "poisson_xy", "rms_n_per_mm"}

@@ -27,6 +27,7 @@ BODY = {
 }
 
 
+@pytest.mark.slow
 def test_photos_give_a_point_of_the_stretch_curve(client: TestClient, tmp_path: Path) -> None:
     out = tmp_path / "points.json"
     result = run("measure", "photos", *PHOTOS, *OPTIONS, "--out", out)

@@ -43,6 +43,7 @@ def test_a_swatch_gives_a_yarn_and_says_what_each_measurement_brought(
     assert kept.yarn.fibre == "wool"
 
 
+@pytest.mark.slow
 def test_a_law_of_one_fabric_gives_the_others(client: TestClient) -> None:
     law = material("cotton").law(Fabric.STOCKINETTE)
     made = post(client, "measure/swatch", GAUGE | {"law": asdict(law)})

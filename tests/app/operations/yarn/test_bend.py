@@ -52,6 +52,7 @@ def test_twist_is_left_out_where_the_mirrored_state_is_no_minimum() -> None:
     assert bent_in("acrylic", "K\nP\nP\nK").twist_n_mm is None
 
 
+@pytest.mark.slow
 def test_packaged_repeats_are_bent_from_the_store(monkeypatch: pytest.MonkeyPatch) -> None:
     length_mm = yarn_for(material("acrylic"), StitchChart.parse("PPK")).loop_length_mm
     near = bent_in("acrylic", "PPK", loop_length_mm=1.0001 * length_mm)

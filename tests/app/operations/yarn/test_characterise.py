@@ -104,6 +104,7 @@ def test_a_cluster_of_two_processes_gives_the_same(
     assert there == here
 
 
+@pytest.mark.slow
 def test_the_operation_reports_progress_and_stops(tmp_path: Path) -> None:
     request = CharacteriseRequest.model_validate(
         {"material": "cotton", "fabrics": ["stockinette"], "tensions": [1.0]}

@@ -7,6 +7,7 @@ from tests.app.command_line import printed
 from tests.app.rest import post
 
 
+@pytest.mark.slow
 def test_a_loop_over_rest(client: TestClient) -> None:
     body = {"chart": "K", "material": "acrylic", "points": 4, "cycles": 1, "rest_sizes": False}
     loop = post(client, "hysteresis", body)

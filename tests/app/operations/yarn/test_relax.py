@@ -22,6 +22,7 @@ FIELDS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
     shape = run("relax", "stockinette", "--size", "4x4", "--material", "cotton")
     assert set(shape) >= FIELDS

@@ -61,6 +61,7 @@ def test_friction_stiffens_the_pull_and_its_law() -> None:
         assert swept["turn"] is swept["lost_share"] is swept["left_strain"] is None
 
 
+@pytest.mark.slow
 def test_without_friction_the_way_back_retraces_the_way_there(client: TestClient) -> None:
     body = PULL | {"material": "cotton", "direction": "wale", "points": 4}
     loop = post(client, "sweep", body | {"there_and_back": True, "friction": 0})
@@ -73,6 +74,7 @@ def test_without_friction_the_way_back_retraces_the_way_there(client: TestClient
     assert loop["law"]["alpha_xx"] == pytest.approx(free["law"]["alpha_xx"], rel=1e-2)
 
 
+@pytest.mark.slow
 def test_a_loop_is_printed_with_what_it_loses() -> None:
     words = ["sweep", "stockinette", *ACRYLIC, "--direction", "wale", "--max-strain", "0.1"]
     shown = printed(*words, "--points", "3", "--there-and-back")

@@ -24,6 +24,7 @@ def test_the_command_compares_the_tube_with_flat_fabric() -> None:
     assert "against flat" in shown
 
 
+@pytest.mark.slow
 def test_a_tube_says_that_its_mirrored_shape_is_no_minimum() -> None:
     tube = run("tube", "rib", "--material", "acrylic", "--wales", 96)
     (note,) = tube["notes"]

@@ -32,6 +32,7 @@ def test_a_stopped_job_goes_on_where_it_was(tmp_path: Path) -> None:
     assert relaxed.rows == relaxed.columns == 1
 
 
+@pytest.mark.slow
 def test_rows_of_a_whole_chart_may_differ_in_yarn(tmp_path: Path) -> None:
     request = REQUEST.model_copy(update={"chart": "KP\nKK", "rounds": 2, "yarn_per_stitch": True})
     by_rule = whole(request, Context(tmp_path))

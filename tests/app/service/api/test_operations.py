@@ -28,6 +28,7 @@ def test_a_large_chart_is_predicted_in_a_worker(
 
 
 @pytest.mark.parametrize(("columns", "count"), [(200, 0), (206, 1)])
+@pytest.mark.slow
 def test_a_large_chart_is_laid_in_a_worker(
     client: TestClient, computed: list[Any], columns: int, count: int
 ) -> None:

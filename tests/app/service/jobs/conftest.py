@@ -6,6 +6,7 @@ from app.service.compute.compute import Compute
 from app.service.compute.processes import processes
 from app.service.jobs.kinds import KINDS
 from app.service.store.database import Database
+from tests.app.conftest import MOSTLY_SQLITE
 from tests.app.jobs import WORK
 
 
@@ -21,9 +22,7 @@ def compute() -> Iterator[Compute]:
     pool.close()
 
 
-@pytest.fixture(
-    params=["sqlite", pytest.param("postgres", marks=[pytest.mark.postgres, pytest.mark.slow])]
-)
+@pytest.fixture(params=MOSTLY_SQLITE)
 def database(request: pytest.FixtureRequest) -> Database:
     """An empty database with its tables; the runner waits so often that PostgreSQL is slow here."""
     database: Database = request.getfixturevalue(f"{request.param}_database")

@@ -46,6 +46,7 @@ def test_every_kind_has_an_example() -> None:
     assert without == ["work"]  # which tests add
 
 
+@pytest.mark.slow
 async def test_a_killed_worker_loses_only_its_own_job(
     runner: JobRunner, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -85,8 +85,11 @@ def test_a_read_only_folder_loses_no_result(
     "arguments",
     [
         ("relax", "stockinette", "--material", "cotton"),
-        ("sweep", "stockinette", "--material", "cotton", "--direction", "course",
-         "--max-strain", "0.1", "--points", "3"),
+        pytest.param(
+            ("sweep", "stockinette", "--material", "cotton", "--direction", "course",
+             "--max-strain", "0.1", "--points", "3"),
+            marks=pytest.mark.slow,
+        ),
     ],
 )  # fmt: skip
 def test_commands_remember_and_forget_on_request(

@@ -65,6 +65,7 @@ def test_a_material_is_listed_first_with_its_measured_curve(own: TestClient) -> 
     }
 
 
+@pytest.mark.slow
 def test_charts_are_predicted_stretched_and_kept_with_it(own: TestClient) -> None:
     """Here, on a worker, in a job, and in a picture that a worker draws."""
     mine = identifier(own)
@@ -147,6 +148,7 @@ def test_of_two_materials_with_one_identifier_the_earlier_counts(
     assert store.find("own:mine.000000").name == "Ann's"
 
 
+@pytest.mark.slow
 def test_many_users_see_all_their_materials(database: Database) -> None:
     """A user's quota has nothing to do with others', and holds when requests come at once."""
     store, most = MaterialStore(database), USER_LIMITS.materials

@@ -13,10 +13,18 @@ from app.service.store.database import Database
 from app.service.web import security, sessions
 from app.service.web.sessions import MAX_SESSIONS, NewToken, Sessions
 from tests.app.clients import LONG, bearing, drain, served, state_of, tokens_of, watching
+from tests.app.conftest import MOSTLY_SQLITE
 from tests.app.rest import draw
 from tests.app.running import wait_until
 
 SESSION = "/api/v1/session"
+
+
+@pytest.fixture(params=MOSTLY_SQLITE)
+def database(request: pytest.FixtureRequest) -> Database:
+    """An empty database with its tables."""
+    database: Database = request.getfixturevalue(f"{request.param}_database")
+    return database
 
 
 @pytest.fixture

@@ -311,9 +311,8 @@ def _folds(piece: CurledPiece) -> tuple[float, list[float]]:
     return right / total, mean_folds
 
 
-@pytest.mark.parametrize(
-    "kind", ["miura", *(pytest.param(k, marks=pytest.mark.slow) for k in PURL if k != "miura")]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", PURL)
 def test_panels_fold_as_their_natural_curvature_says(kind: str) -> None:
     """Knits into ridges along the wales and valleys along the courses, purls the other way, so
     that the sheet bends over where knits meet purls; half of the folding would be chance."""

@@ -100,6 +100,7 @@ def test_a_stiff_plate_falls_as_in_theory() -> None:
     assert plate.coefficient > 0.99
 
 
+@pytest.mark.slow
 def test_softer_cloth_drapes_more_and_has_more_folds() -> None:
     drapes = [drape(_isotropic(length), across=16, starts=(6,)) for length in (15.0, 30.0, 60.0)]
     assert all(draped.converged for draped in drapes)
@@ -147,6 +148,7 @@ def test_the_weight_of_the_border_balances_the_moment_of_the_piece() -> None:
     assert border.rule_share == pytest.approx((ruled / border.width_mm) ** 2)
 
 
+@pytest.mark.slow
 def test_a_board_holds_from_that_width_on() -> None:
     """A border that does not bend: just wide enough it stays on the table, narrower it tips."""
     board = replace(GARTER, rigidity_n_mm=(20.0, 20.0))

@@ -41,6 +41,7 @@ def width(interval: object) -> float:
     return math.log(interval.high / interval.low)  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_each_measurement_narrows_what_it_is_about() -> None:
     area = RECORD.stitch_course_mm * RECORD.stitch_wale_mm
     weight = RECORD.loop_length_mm * 0.394e-3 * 120 * 150 / area

@@ -36,6 +36,7 @@ def test_photos_give_force_and_strains() -> None:
     assert not read.notes
 
 
+@pytest.mark.slow
 def test_a_swatch_on_its_side_is_pulled_along_its_rows() -> None:
     scene = scene_of(turn_deg=90)
     course, wale = scene.stitch_mm
@@ -62,6 +63,7 @@ def test_a_coin_serves_with_a_larger_error() -> None:
     assert read.scale.relative_error > 0.005
 
 
+@pytest.mark.slow
 def test_a_gauge_that_does_not_fit_is_noted() -> None:
     swatch = replace(SWATCH, stitches_per_10_cm=22.0)
     read = read_hanging([hung(scene_of(), 0), hung(scene_of().pulled(0.2, -0.1), 300)], swatch)

@@ -29,7 +29,7 @@ def test_the_sheet_gives_scale_and_tilt(tilt: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("blur", [0.7, 2.0, 3.0])
 def test_the_edges_of_the_marks_give_the_blur(blur: float) -> None:
-    assert sheet_scale(Scene(blur_px=blur).photo()).blur_px == pytest.approx(blur, rel=0.2)
+    assert sheet_scale(scene_of(blur_px=blur).photo()).blur_px == pytest.approx(blur, rel=0.2)
 
 
 def test_a_coin_gives_the_scale_and_an_error_that_covers_its_tilt() -> None:

@@ -14,8 +14,9 @@ NEAR = ((0.75 * STITCH_MM[0], 1.33 * STITCH_MM[0]), (0.75 * STITCH_MM[1], 1.33 *
 
 
 def picture(scene: Scene) -> np.ndarray:
-    """The middle of the swatch, with 6 pixels per mm."""
-    return replace(scene, seen_mm=(90.0, 80.0)).photo()
+    """The middle of the swatch, at most 18 × 22 stitches, with 6 pixels per mm."""
+    course, wale = scene.stitch_mm
+    return replace(scene, seen_mm=(min(90.0, 18 * course), min(80.0, 22 * wale))).photo()
 
 
 @pytest.mark.parametrize("fabric", Fabric)

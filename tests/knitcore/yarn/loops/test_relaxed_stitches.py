@@ -38,6 +38,7 @@ def test_plain_stitches_come_to_rest_as_on_their_own_path() -> None:
     assert cell.friction is None
 
 
+@pytest.mark.slow
 def test_mirror_images_rest_alike(tmp_path: Path) -> None:
     left, right = (at_rest(text, StitchHistory.BLOCKED) for text in ("O/;KK", "\\O;KK"))
     assert np.allclose(sizes(left), sizes(right), rtol=1e-2)

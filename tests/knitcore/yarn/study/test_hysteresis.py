@@ -79,6 +79,7 @@ def test_a_pull_is_the_first_leg_of_a_loop(stockinette, loop):
     assert len(stopped.cells) == beyond[0] + 1
 
 
+@pytest.mark.slow
 def test_a_pull_may_begin_where_other_pulls_have_left_the_fabric(stockinette):
     worn = at_rest(stockinette, "stretched-course", 0.25)
     again = pull(worn, "course", 0.1, 0.25, points=6)
@@ -89,6 +90,7 @@ def test_a_pull_may_begin_where_other_pulls_have_left_the_fabric(stockinette):
     assert again.cells[-1].cell_course_mm == pytest.approx(1.1 * worn.cell.cell_course_mm)
 
 
+@pytest.mark.slow
 def test_yarn_that_locks_ends_the_pull_and_turns_the_loop(stockinette):
     short = pull(stockinette, "course", 4.0, 0.25, points=9)
     assert len(short.cells) < 9
@@ -120,6 +122,7 @@ def test_the_curve_returns_to_the_point_where_it_turned(stockinette):
     assert stress[len(there) + 4] < 0.7 * stress[-1]
 
 
+@pytest.mark.slow
 def test_the_fabric_rests_where_its_history_left_it(stockinette):
     wide = at_rest(stockinette, History.STRETCHED_COURSE, 0.25).cell
     assert wide.cell_course_mm > 1.005 * stockinette.cell_course_mm
