@@ -14,6 +14,8 @@ import numpy as np
 
 from knitcore.chart.fabric import Direction, Fabric
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.relaxed_stitches import relax_stitches
 from knitcore.yarn.model.paper_samples import load_samples, sample
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.growth import Start
@@ -31,6 +33,15 @@ FAR = {
 YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 LOOP_MM = 11.28
 LIMITS_S = {1: 0.04, 2: 0.2, 4: 1.0, 8: 8.0, 16: 60.0}
+REPEATS = {
+    "lace of 12": ("KKKKKK;KO/\\OK", 2.5),
+    "cable rope of 16": ("[2/2L];KKKK;KKKK;KKKK", 4.0),
+    "cable rope of 24": ("PKKKKP;P[2/2R]P;PKKKKP;PKKKKP", 9.0),
+    "feather and fan of 18": ("//OOOO\\\\K;KKKKKKKKK", 9.0),
+    "slip mosaic of 16": ("KKKK;VKVK;KKKK;KVKV", 3.0),
+    "fisherman's rib of 8": ("TP;KP;PT;PK", 2.0),
+}
+"""Repeats of other stitches, and their limits in CPU seconds."""
 STITCH_LIMIT_S, SWEEP_LIMIT_S, SWEEPS_LIMIT_S = 0.15, 4.0, 90.0
 
 
@@ -98,6 +109,15 @@ def cells(sides: list[int], charts: int) -> None:
         print(f"{side} x {side}: median", against(float(np.median(times)), limit))
 
 
+def repeats() -> None:
+    """Repeats of lace, cables, slips and tucks after blocking."""
+    print("repeats of other stitches, blocked and let go")
+    relax_stitches(SymbolChart.parse("KKKK;KO/K;KKKK"), YARN, LOOP_MM)  # compiles
+    for name, (chart, limit) in REPEATS.items():
+        cell = relax_stitches(SymbolChart.parse(chart), YARN, LOOP_MM)
+        print(f"{name:24}{against(cell.seconds, limit)} {cell.energy_n_mm:.6f} N·mm", flush=True)
+
+
 def main() -> None:
     """Print everything."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -111,6 +131,7 @@ def main() -> None:
     if options.cells_only:
         return
     stitches()
+    repeats()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Couplings of one sample with others, summed up by spans before it goes into a large matrix.
+"""Couplings of samples with each other, summed up by spans before they go into a large matrix.
 
 Samples of a span share their control points. So the couplings of a sample are gathered by the
 control points of the others, then by those of its own span, and then written into the tiles.

@@ -21,20 +21,17 @@ from knitcore.yarn.loops.chart_images import ChartImage
 from knitcore.yarn.loops.drawn_yarn import DrawnYarn
 from knitcore.yarn.loops.holes import holes, is_folded
 from knitcore.yarn.loops.stitch_energy import StitchEnergy, YarnPerAct
-from knitcore.yarn.loops.take_down import GRID, TakeDown, pulls_n, room_for_yarn
-from knitcore.yarn.model.cell import YarnCell
+from knitcore.yarn.loops.take_down import TakeDown, pulls_n, room_for_yarn
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
 from knitcore.yarn.model.input_checks import check_loop
 from knitcore.yarn.model.relaxed_cell import Branch
-from knitcore.yarn.model.spline import SplineGrid
-from knitcore.yarn.model.tiling import centre_lines, refined_state
+from knitcore.yarn.model.tiling import centre_lines
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.clasps import cell_is_knitted, clasp_code
 from knitcore.yarn.solve.friction import RubbedCell, Rubbing, check_coefficient, rub
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
 from knitcore.yarn.solve.splines import RelaxedRepeat, compile_kernels, relaxed_repeat
-from knitcore.yarn.solve.topology import clearance_at
 
 MAX_STITCHES = 36
 """Largest repeat."""
@@ -47,11 +44,9 @@ TAKE_DOWN_N_PER_MM = 0.03
 _RELEASE = 3
 """Steps in which a pull is let go."""
 _SETTLED = Options(tolerance=1e-6, slack=1e-6, iterations=150)
-_PULLED = Options(tolerance=1e-4, slack=1e-4, iterations=150)
-"""Settings under a pull that is let go afterwards."""
+_PULLED = Options(tolerance=1e-4, slack=1e-4, iterations=150, leaves_saddles=False)
+"""Settings under a pull that is let go afterwards: it may hold a saddle, which friction leaves."""
 _RUBBED = Options(tolerance=1e-5, slack=1e-5, iterations=60)
-_COMPARED = 192
-"""Samples of a stitch by which two resolutions are compared."""
 CAUTION = (
     "This is one history of many, and such a cloth rests differently after another one. Sizes of "
     "cells with lace, cables, slipped or tucked stitches miss measured cloth by a factor of 1.2 to "
@@ -216,9 +211,10 @@ def relax_stitches(
     drawn = _knotted(room_for_yarn(graph, yarn, loop_length_mm))
     lengths = loop_length_mm * (per_act or YarnPerAct()).of_rows(graph)
     take_down = TakeDown(yarn, Convention.parse(convention), lengths, cancelled)
-    taken, minimum = take_down(drawn)
-    energy, state = _coarser(taken, minimum)
-    energy, minimum, rubbing = _at_rest(energy, state, minimum.tension, kind, friction, cancelled)
+    energy, minimum = take_down(drawn)
+    energy, minimum, rubbing = _at_rest(
+        energy, minimum.state, minimum.tension, kind, friction, cancelled
+    )
     cell, state = energy.cell, minimum.state
     if not cell_is_knitted(cell, state):
         raise UnravelledError("The stitches come undone on the way to rest.")
@@ -301,26 +297,3 @@ def _at_rest(
 def _check_apart(energy: CellEnergy, minimum: Minimum) -> None:
     if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
         raise ConvergenceError("The yarn locks while the cloth is let go. Give longer loops.")
-
-
-def _coarser(energy: StitchEnergy, minimum: Minimum) -> tuple[StitchEnergy, Array]:
-    """The state on the usual grid, if no strand moves by half of what keeps it from another."""
-    cell, state = energy.cell, minimum.state
-    if cell.grid.controls <= GRID.controls:
-        return energy, state
-    usual = replace(cell, grid=GRID)
-    coarse = refined_state(cell, state, usual)
-    coarser = replace(energy, cell=usual)
-    moved = np.linalg.norm(_compared(cell, state) - _compared(usual, coarse), axis=2).max()
-    apart = clearance_at(coarser, coarse).min_distance_mm
-    if moved > 0.45 * minimum.min_distance_mm or apart <= 2.0 * energy.yarn.core_radius_mm:
-        return energy, state
-    return coarser, coarse
-
-
-def _compared(cell: YarnCell, state: Array) -> Array:
-    """Centre lines at places that do not depend on the resolution."""
-    grid = cell.grid
-    samples = _COMPARED // grid.controls
-    dense = replace(cell, grid=SplineGrid(grid.controls, samples))
-    return centre_lines(dense, state, cell.rows, cell.wales)

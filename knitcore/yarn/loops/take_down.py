@@ -3,7 +3,8 @@
 The first shape has far more yarn than the cloth. As on a machine, the cloth hangs from its needles
 under a take-down while the yarn of every row is drawn in by small parts; steps that lock are taken
 back and made smaller, and where that does not help the cloth is pulled more gently. Every step of
-the yarn is certified, so the crossings stay those of the first shape.
+the yarn is certified, so the crossings stay those of the first shape. That may take a fine grid;
+tight yarn is smooth, so the usual one takes over as soon as it can.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from knitcore.yarn.model.cell import YarnCell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import STIFF_SPACING_PER_BENDING
 from knitcore.yarn.model.spline import SplineGrid
+from knitcore.yarn.model.tiling import centre_lines, refined_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.newton import Minimum, Options, minimise
 from knitcore.yarn.solve.topology import clearance_at
@@ -44,11 +46,13 @@ _OVERLONG = 0.02
 """Excess of a row's yarn, in loop lengths, with which the last stage still counts."""
 _STAGE = Options(tolerance=1e-2, slack=1e-2, iterations=5, leaves_saddles=False)
 GRID = SplineGrid(16, 3)
-"""Resolution of the relaxed shape, if it is fine enough."""
+"""Resolution of the shape, as soon as it is fine enough."""
 _UNEVEN = 2.0
 """Samples in a diameter of the core; certified steps need one and a half, evenly spread."""
 _MOST = 10
 """Most samples per control point."""
+_COMPARED = 192
+"""Samples of a stitch by which two resolutions are compared."""
 
 
 def room_for_yarn(graph: StitchGraph, yarn: YarnModel, loop_length_mm: float) -> DrawnYarn:
@@ -135,15 +139,39 @@ class TakeDown:
                 if most < _LEAST_STEP:
                     raise
                 continue
-            energy, last, done = nearer, minimum, part
+            energy, last = self._coarser(nearer, minimum, pull)
+            done = part
             most = min(1.3 * most, _STEP)
         return energy, last
+
+    def _coarser(
+        self, energy: StitchEnergy, minimum: Minimum, pull: float
+    ) -> tuple[StitchEnergy, Minimum]:
+        """The state on the usual grid, if no strand moves by half of what keeps it from another."""
+        cell, state = energy.cell, minimum.state
+        if cell.grid.controls <= GRID.controls:
+            return energy, minimum
+        coarser = self.energy(replace(cell, grid=GRID), energy.loop_length_mm, pull)
+        coarse = refined_state(cell, state, coarser.cell)
+        moved = np.linalg.norm(_compared(cell, state) - _compared(coarser.cell, coarse), axis=2)
+        apart = clearance_at(coarser, coarse).min_distance_mm
+        if moved.max() > 0.45 * minimum.min_distance_mm or apart <= 2.0 * self.yarn.core_radius_mm:
+            return energy, minimum
+        return coarser, replace(minimum, state=coarse)
 
     def _stage(self, energy: StitchEnergy, state: Array, tension: Array | None) -> Minimum:
         minimum = minimise(energy, state, tension=tension, options=_STAGE, cancelled=self.cancelled)
         if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
             raise ConvergenceError("cores overlap")
         return minimum
+
+
+def _compared(cell: YarnCell, state: Array) -> Array:
+    """Centre lines at places that do not depend on the resolution."""
+    grid = cell.grid
+    samples = _COMPARED // grid.controls
+    dense = replace(cell, grid=SplineGrid(grid.controls, samples))
+    return centre_lines(dense, state, cell.rows, cell.wales)
 
 
 def pulls_n(stitches: int, loop_mm: float, n_per_mm: float) -> tuple[float, float]:

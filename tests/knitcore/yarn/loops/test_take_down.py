@@ -1,0 +1,18 @@
+"""Yarn that is drawn in to its length."""
+
+import numpy as np
+
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.take_down import GRID, TakeDown, room_for_yarn
+from knitcore.yarn.model.conventions import Convention
+from tests.knitcore.yarn.random_charts import ACRYLIC, EXAMPLES, LOOP_MM
+
+
+def test_a_cable_is_drawn_finely_and_drawn_in_on_the_usual_grid() -> None:
+    drawn = room_for_yarn(SymbolChart.parse(EXAMPLES["cable 1/1"]).graph, ACRYLIC, LOOP_MM)
+    assert drawn.cell.grid.controls > GRID.controls
+    goal = np.full(drawn.cell.rows, LOOP_MM)
+    energy, minimum = TakeDown(ACRYLIC, Convention.PUBLISHED, goal)(drawn)
+    assert energy.cell.grid == GRID
+    assert np.abs(minimum.terms.excess_mm).max() < 0.02 * LOOP_MM * drawn.cell.wales
+    assert minimum.min_distance_mm > 2.0 * ACRYLIC.core_radius_mm
