@@ -121,5 +121,5 @@ def test_other_stitches_are_drawn_as_they_hang_on_the_needles(visitor: Page, ser
         page.get_by_label("Go to row").fill(str(row))
         page.keyboard.press("Tab")
         expect(picture).to_have_attribute("aria-label", re.compile(f", {count} of other kinds"))
-        assert "L" in (picture.locator("path.sign").first.get_attribute("d") or "")
+        expect(picture.locator("path.sign").first).to_have_attribute("d", re.compile("L"))
     assert axe.violations_in_both_themes(page, "#along-dialog") == []

@@ -11,7 +11,7 @@ from pydantic import Field
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
 from knitcore.chart.phases import pure_fabric
-from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.stitch_chart import StitchChart, check_stitches
 from knitcore.cloth.flat import (
     Clamps,
     EnergyModel,
@@ -41,6 +41,8 @@ Array = NDArray[np.float32]
 
 MAX_STITCHES = 40_000
 """Largest chart of a test stitch by stitch over REST; larger ones are pulled in blocks."""
+MAX_IN_BLOCKS = MAX_CELLS // 4
+"""Largest chart of a test in blocks, in stitches: each is first laid in quarters."""
 MIXED = (
     "Forces may differ by a quarter from the chart's curve: mixed stitches first unfold, and the "
     "laws of a test can only stiffen."
@@ -106,6 +108,7 @@ class StretchRequest(GaugedRequest):
         if context.local:
             return
         chart = to_chart(self.chart)
+        check_stitches(chart.stitches, MAX_IN_BLOCKS)
         block = self.block_of(chart, context)
         blocks = math.ceil(chart.rows / block) * math.ceil(chart.columns / block)
         if blocks > MAX_STITCHES:
@@ -124,7 +127,7 @@ class StretchRequest(GaugedRequest):
 
     def block_of(self, chart: StitchChart, context: Context) -> int:
         """Stitches a side of the blocks of a test."""
-        most = MAX_CELLS // 4 if context.local else MAX_STITCHES
+        most = MAX_IN_BLOCKS if context.local else MAX_STITCHES
         if self.block is not None:
             return min(self.block, max(chart.rows, chart.columns))
         return 1 if chart.rows * chart.columns <= most else block_side(chart.rows, chart.columns)
@@ -398,6 +401,7 @@ OPERATION = Operation(
     stretch,
     tag="stretch",
     summary="Pull a chart between two clamps",
+    most_stitches=MAX_IN_BLOCKS,
     example={
         "chart": {"fabric": "garter", "columns": 4, "rows": 4},
         "material": "acrylic",

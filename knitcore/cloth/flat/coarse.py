@@ -11,6 +11,8 @@ the waist by up to 2.5 % of the width (2 x 2 rib, along columns), and those of p
 all. The size of the blocks mattered little: 0.1 %.
 """
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
