@@ -34,10 +34,6 @@ SOFT = 0.9
 """Standard deviation in pixels by which a picture is blurred, or loops and pixels would beat."""
 QUALITY = 90
 """Quality of pictures on their way to browsers, 0 to 100."""
-SHIFTS = np.array([0.7549, 0.5698])
-"""Pixels by which stitches are shifted from row to row, and from column to column, without their
-whole part (Roberts's evenly spread sequence): loops would slowly fall out of step with pixels and
-in again, and the cloth would have bands."""
 FEWEST = 900
 """Stitches of a flat cloth that is seen from so far that its loops make one surface."""
 
@@ -115,8 +111,8 @@ def _balls(scene: FabricScene, scale: float, size: tuple[int, int], side: int) -
     angles = places.angles[shown].astype(np.float32).reshape(-1, 1)
     cosine, sine = np.cos(angles), np.sin(angles)
     away = scale * (places.centres_mm[shown].reshape(-1, 2) - scene.ground.middle_mm)
-    rows, columns = np.indices(shapes.index.shape)[:, shown].reshape(2, -1, 1)
-    away += (SHIFTS * rows + SHIFTS[::-1] * columns) % 1.0 - 0.5
+    # in step with pixels, and out of it again, the cloth would have bands
+    away += np.random.default_rng(0).random((*shapes.index.shape, 2))[shown].reshape(-1, 2) - 0.5
     middle = (away + 0.5 * np.array(size) * [side, -1]).astype(np.float32)
     x = cosine * own[..., 0] - sine * own[..., 1] + middle[:, :1]
     y = sine * own[..., 0] + cosine * own[..., 1] + middle[:, 1:]
