@@ -102,7 +102,7 @@ def test_a_large_chart_is_framed_flat_and_as_it_lies_at_first_and_after_strokes(
         before = pixels(page, CLOTH)
         with page.expect_response(lambda r: r.url.endswith(view) and r.request.method == "PUT"):
             drag(page, 180, 0, start=(0, below))  # a few stitches are hardly a pixel
-        wait_for_picture(page, CLOTH, partial(_recoloured, before), 10)
+        wait_for_picture(page, CLOTH, partial(_recoloured, before), 5)
         settle(page)
         _wait_until_framed(page, still)
 
