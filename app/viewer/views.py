@@ -146,8 +146,8 @@ class Views:
         return len(stopped)
 
     def close(self) -> None:
-        """Close all views."""
-        with self._lock:
+        """Close all views, and one that is being made once it is."""
+        with self._opening, self._lock:
             views = list(self._views.values())
             self._views.clear()
         for view in views:

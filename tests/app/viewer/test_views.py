@@ -38,21 +38,25 @@ def _servers() -> int:
 
 
 def test_nobody_waits_while_a_view_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
-    made, may_be_made = views_module.new_view, threading.Event()
+    made, begun, may_be_made = views_module.new_view, threading.Event(), threading.Event()
 
     def slowly_made() -> View:
+        begun.set()
         may_be_made.wait(60)
         return made()
 
     monkeypatch.setattr(views_module, "new_view", slowly_made)
     with closing(Views(2, 60.0)) as views, ThreadPoolExecutor() as threads:
         opening = threads.submit(views.open, "ada/slow")
-        wait_until(opening.running)
+        assert begun.wait(60)
         assert views.get("ada/slow") is None
         views.watch("ada/slow", +1)
         assert views.close_idle() == 0
+        closing_all = threads.submit(views.close)
         may_be_made.set()
-        assert opening.result() is views.get("ada/slow")
+        assert opening.result() is not None
+        closing_all.result()
+        assert len(views) == 0
 
 
 def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:
