@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from knitcore import InputError, StitchChart, material
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.formats.designs.layout import layout_of
-from knitcore.formats.read.knitout_reader import knitted_chart, verified
+from knitcore.formats.read.knitout_reader import knitted_chart
 from knitcore.formats.write.export import ExportKind, ExportOptions, export_chart
 from knitcore.formats.write.sheets.knit_along import knit_along
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
@@ -25,6 +25,7 @@ from knitcore.machine.program import Finish, knitout_program
 from knitcore.machine.program_check import check_program
 from knitcore.machine.setting import setting_of
 from studies.five_designs import designs
+from tests.knitcore.machine.second_machine import verified_twice
 from tests.knitcore.pieces import pieces
 from tests.knitcore.symbol_charts import symbol_charts
 
@@ -196,7 +197,7 @@ def test_any_chart_is_knitted_or_refused_with_what_helps(
     try:
         setting = setting_of(piece, machine, material(yarn))
         if machine.reads_programs:
-            program = verified(
+            program = verified_twice(
                 piece,
                 machine=machine,
                 finish=finish,
@@ -220,7 +221,7 @@ def stitches_are_knitted_or_refused(
     machine = replace(machine, waste_passes=4)
     setting = setting_of(Piece.plain(chart.plain), machine, WOOL)
     try:
-        made = verified(
+        made = verified_twice(
             chart,
             finish=finish,
             machine=machine,

@@ -3,20 +3,14 @@
 A program is knitted (:mod:`knitcore.machine.knitout_machine`), the piece is told from waste
 (:mod:`knitcore.formats.read.knitout_parts`), and its stitches are put into courses and wales
 (:mod:`knitcore.formats.read.knitout_courses`): all from the graph of loops, not from names. A
-program of this library is executed by the package ``knitout-interpreter`` too before it is
-exported. That package checks every instruction against a machine's state, and its loops must be
-the same as those read here.
+program of this library is knitted and read in this way before it is exported. In the tests the
+package ``knitout-interpreter`` executes the programs too, and must make the same loops.
 """
 
 import re
-import sys
-import typing
-import warnings
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
 from itertools import cycle
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +23,7 @@ from knitcore.formats.read.knitout_parts import KnittedPart, main_part, named, p
 from knitcore.formats.read.knitout_stitches import chart_of_states
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
-from knitcore.machine.knitout_machine import Loop, knitting_of, states_of
+from knitcore.machine.knitout_machine import knitting_of, states_of
 from knitcore.machine.profile import DEFAULT, MachineProfile, profile
 from knitcore.machine.program import Finish, KnitoutProgram
 from knitcore.machine.program_check import check_program
@@ -38,7 +32,6 @@ from knitcore.machine.tension import LoopYarn
 
 MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\S+) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
-_OF_MACHINE = re.compile(r"^(?:x-|;;(?!Carriers)).*\n", re.MULTILINE)
 _COURSES = re.compile(r"^; course 1\n(?:(?!; waste|; bind).*\n)*", re.MULTILINE)
 """The courses in a program of this library."""
 _COLOURS = ("#efe9dd", "#1f3b70", "#b03a2e", "#2e7d5b", "#c99a2e", "#6b4a8a", "#3a8fb0", "#8a5a3c")
@@ -170,7 +163,8 @@ def verified(
     InputError
         If the machine cannot knit the piece, or transfers would break the yarn.
     KnitoutMismatchError
-        If the virtual machine refuses the program, warns, or knits something else.
+        If the virtual machine refuses the program or knits something else, or the machine's
+        profile does not allow it.
     """
     if not isinstance(chart, SymbolChart) or chart.is_plain:
         chart = Piece.of(chart).cropped()
@@ -179,88 +173,12 @@ def verified(
         meant, finish=finish, machine=machine, stitch_number=stitch_number, yarn=yarn, looser=looser
     )
     try:
-        loops, warned = _interpreted(made.text)
         knitted = knitted_stitches(made.text)
     except InputError as error:
         raise KnitoutMismatchError(f"the program was refused: {error}") from error
-    if loops != _graph(knitting_of(made.text).loops) or knitted.content != meant:
+    if knitted.content != meant:
         raise KnitoutMismatchError("the virtual machine knitted another chart.")
-    if warned:
-        raise KnitoutMismatchError(f"the virtual machine warned: {warned[0]}")
     for problem in check_program(made.text, machine or profile(DEFAULT)):
         if problem.stops:
             raise KnitoutMismatchError(f"the machine's profile does not allow it: {problem}")
     return made
-
-
-_Graph = list[tuple[str, tuple[str, ...], list[int]]]
-"""Needle, carriers and parents of each loop, in the order in which they are made."""
-
-
-def _graph(loops: Sequence[Loop]) -> _Graph:
-    return [(o.name, o.carriers, sorted(p.number for p in o.parents)) for o in loops]
-
-
-def _interpreted(program: str) -> tuple[_Graph, list[str]]:
-    """The loops that the virtual machine makes of a program, and its warnings."""
-    from knitout_interpreter.knitout_errors.Knitout_Error import Knitout_Error
-    from knitout_interpreter.knitout_execution import Knitout_Executer
-    from virtual_knitting_machine.knitting_machine_exceptions.Knitting_Machine_Error import (
-        Knitting_Machine_Error,
-    )
-    from virtual_knitting_machine.knitting_machine_warnings.Yarn_Carrier_System_Warning import (
-        In_Loose_Carrier_Warning,
-    )
-
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        # A machine without a hook holds the end of a yarn by waste yarn.
-        warnings.simplefilter("ignore", In_Loose_Carrier_Warning)
-        try:
-            lines = _parser().parse_knitout_to_instructions(_in_plain_knitout(program))
-            graph: Any = Knitout_Executer(lines).resulting_knit_graph
-        # For some mistakes in a program the interpreter raises Python's own errors.
-        except (
-            Knitout_Error,
-            Knitting_Machine_Error,
-            ArithmeticError,
-            AssertionError,
-            AttributeError,
-            LookupError,
-            TypeError,
-            ValueError,
-        ) as error:
-            raise InputError(
-                "knitout", f"{_one_line(error)}.", "Correct that line: the machine stops there."
-            ) from None
-    loops = sorted(graph.sorted_loops, key=lambda loop: loop.loop_count_on_machine)
-    number = {loop: index for index, loop in enumerate(loops)}
-    graph_of_machine: _Graph = [
-        (
-            f"{'f' if o.source_needle.is_front else 'b'}{o.source_needle.position}",
-            (str(o.yarn.carrier.carrier_id),),
-            sorted(number[parent] for parent in o.parent_loops),
-        )
-        for o in loops
-    ]
-    return graph_of_machine, [_one_line(w.message) for w in caught]
-
-
-def _in_plain_knitout(program: str) -> str:
-    """A program for the package's only machine, without extension operations and headers."""
-    return _OF_MACHINE.sub("", program)
-
-
-@lru_cache(maxsize=1)
-def _parser() -> Any:
-    """The parser of the language; made once, with what makes the machine fast."""
-    if sys.version_info < (3, 12):  # lists a protocol's members at each isinstance: 3/4 of a run
-        for name in ("_get_protocol_attrs", "_is_callable_members_only"):
-            setattr(typing, name, lru_cache(getattr(typing, name)))
-    from knitout_interpreter.knitout_language.Knitout_Parser import Knitout_Parser
-
-    return Knitout_Parser()
-
-
-def _one_line(message: object) -> str:
-    return " ".join(str(message).split()).rstrip(".")[:300]

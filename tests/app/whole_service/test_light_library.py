@@ -12,7 +12,7 @@ from tests.app.running import python
 PROJECT = tomllib.loads(
     (Path(__file__).resolve().parents[3] / "pyproject.toml").read_text(encoding="utf-8")
 )["project"]
-MODULES = {"pillow": "PIL", "scikit-image": "skimage", "knitout-interpreter": "knitout_interpreter"}
+MODULES = {"pillow": "PIL", "scikit-image": "skimage"}
 WITHOUT = """
 import sys
 class Absent:

@@ -7,7 +7,6 @@ from knitcore import Direction, Fabric, InputError, RelaxedSize, StitchChart, ma
 from knitcore.formats.designs.design_file import design_from_mapping
 from knitcore.formats.designs.garment_design import design_of_plan
 from knitcore.formats.designs.layout import layout_notes
-from knitcore.formats.read.knitout_reader import verified
 from knitcore.formats.read.written_reader import read_piece_rows
 from knitcore.formats.write.written_pattern import write_rows
 from knitcore.garment.gauge import Gauge, GaugeSet
@@ -22,6 +21,7 @@ from knitcore.garment.worn_piece import Fit, Worn, worn
 from knitcore.materials import load_library
 from knitcore.materials.yarn_per_stitch import MeasuredYarn
 from knitcore.mechanics.pressure import CAPILLARY_MMHG, too_tight
+from tests.knitcore.machine.second_machine import verified_twice
 from tests.knitcore.refusals import refuses
 
 WOOL = material("glove-wool:published")
@@ -174,7 +174,7 @@ def test_a_glove_is_knitted_by_the_machine_in_four_yarns() -> None:
     coarse = Gauge(3 * own.stitch_course_mm, 3 * own.stitch_wale_mm)
     plan = glove(Hand(), WOOL, gauges=GaugeSet.of_material(WOOL, coarse))
     piece = design_of_plan(plan, "glove-wool", intarsia=True).to_piece()
-    program = verified(piece)
+    program = verified_twice(piece)
     assert program.carriers <= 6
     assert program.shaping_transfers > 0
     assert len(piece.yarns) == 4

@@ -15,6 +15,7 @@ from knitcore.machine.program import Finish, knitout_program
 from knitcore.machine.program_check import check_program
 from knitcore.machine.tension import BREAK_RISK, LoopYarn, pass_tensions
 from tests.knitcore.charts import stitch_charts
+from tests.knitcore.machine.second_machine import verified_twice
 from tests.knitcore.pieces import pieces
 
 
@@ -22,7 +23,7 @@ from tests.knitcore.pieces import pieces
 @given(chart=stitch_charts(most=7))
 @pytest.mark.parametrize("finish", list(Finish))
 def test_the_machine_knits_the_chart(finish: Finish, chart: StitchChart) -> None:
-    assert knitted_chart(verified(chart, finish=finish).text).chart == chart
+    assert knitted_chart(verified_twice(chart, finish=finish).text).chart == chart
 
 
 @settings(max_examples=40)
@@ -30,7 +31,7 @@ def test_the_machine_knits_the_chart(finish: Finish, chart: StitchChart) -> None
 @pytest.mark.slow
 def test_the_machine_knits_outlines_and_colours(piece: Piece, finish: Finish) -> None:
     try:
-        program = verified(piece, finish=finish)
+        program = verified_twice(piece, finish=finish)
     except InputError as error:
         assert "blocks of colour" in error.problem  # noqa: PT017 - the only way to fail
         return
@@ -43,7 +44,7 @@ def test_a_carrier_stays_with_its_block() -> None:
     yarn_of = np.array([[1] * 3 + [0] * 4 + [1] * 3] * 4)
     chart = ShapedChart.rectangle(StitchChart.of_fabric("stockinette", rows=4, columns=10))
     yarns = (MAIN_YARN, PieceYarn("blue", "#0000ff"))
-    program = verified(Piece(chart, yarns, yarn_of))
+    program = verified_twice(Piece(chart, yarns, yarn_of))
     assert program.carriers == 3
     assert "; carrier 1 knits #0000ff blue\n" in program.text
     assert program.text.count("inhook") == 4  # and waste
@@ -54,7 +55,7 @@ def test_a_course_of_one_stitch_ends_a_chain_and_carries_another_yarn() -> None:
     shaped = ShapedChart.parse("KKK\nKKK\nKKK", "..x\n..x\nxxx")
     yarn_of = np.array([[0, 0, 0], [0, 0, 0], [0, 0, 1]])
     piece = Piece(shaped, (MAIN_YARN, PieceYarn("blue", "#0000ff")), yarn_of)
-    assert knitted_chart(verified(piece).text).piece == piece
+    assert knitted_chart(verified_twice(piece).text).piece == piece
 
 
 def test_too_many_blocks_of_colour_are_refused() -> None:
@@ -67,7 +68,7 @@ def test_too_many_blocks_of_colour_are_refused() -> None:
 def test_single_steps_are_decreases_and_larger_ones_are_bound_off() -> None:
     outline = "....xxxx....\n.xxxxxxxxxx.\nxxxxxxxxxxxx"
     text = "\n".join(["K" * 12] * 3)
-    program = verified(Piece.plain(ShapedChart.parse(text, outline)))
+    program = verified_twice(Piece.plain(ShapedChart.parse(text, outline)))
     assert program.transfers == 0
     assert program.shaping_transfers == 2 * (2 + 6)
     assert "rack 1" in program.text
@@ -151,7 +152,7 @@ def test_a_machine_whose_carriers_park_on_the_right_knits_mirrored(
 @pytest.mark.slow
 def test_the_virtual_machine_knits_mirrored_programs(machine: MachineProfile, design: str) -> None:
     machine = replace(machine, waste_passes=4)
-    program = verified(DESIGNS[design], machine=machine, finish=Finish.BIND_OFF)
+    program = verified_twice(DESIGNS[design], machine=machine, finish=Finish.BIND_OFF)
     assert knitted_chart(program.text).piece == DESIGNS[design].cropped()
 
 
@@ -162,7 +163,7 @@ def test_the_virtual_machine_knits_the_programs_of_every_machine(
     machine: MachineProfile, design: str
 ) -> None:
     machine = replace(machine, waste_passes=4)
-    program = verified(DESIGNS[design], machine=machine, finish=Finish.BIND_OFF)
+    program = verified_twice(DESIGNS[design], machine=machine, finish=Finish.BIND_OFF)
     assert knitted_chart(program.text).piece == DESIGNS[design].cropped()
 
 
@@ -176,7 +177,7 @@ def test_a_carrier_ends_a_block_and_begins_another_in_one_row(machine: str) -> N
     yarns = (MAIN_YARN, PieceYarn("blue", "#1f3b70"))
     colours = np.array([[1] * 4 + [0] * 8] * 2 + [[0] * 8 + [1] * 4] * 2)
     chart = ShapedChart.rectangle(StitchChart.of_fabric(Fabric.STOCKINETTE, rows=4, columns=12))
-    program = verified(Piece(chart, yarns, colours), machine=profile(machine))
+    program = verified_twice(Piece(chart, yarns, colours), machine=profile(machine))
     assert program.carriers == 2
 
 
@@ -357,7 +358,7 @@ def test_transfers_that_may_break_the_yarn_are_slowed(monkeypatch: pytest.Monkey
 
 def test_32_x_32_is_exported_and_verified() -> None:
     chart = StitchChart(np.random.default_rng(1).random((32, 32)) < 0.5)
-    assert verified(chart).text.count("\nknit") == 32 * 32 + 6 * 32
+    assert verified_twice(chart).text.count("\nknit") == 32 * 32 + 6 * 32
 
 
 def test_a_chart_that_is_not_knitted_is_never_exported(monkeypatch: pytest.MonkeyPatch) -> None:

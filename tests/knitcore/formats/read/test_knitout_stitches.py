@@ -19,6 +19,7 @@ from knitcore.machine.setting import setting_of
 from knitcore.machine.stitch_program import stitch_program
 from knitcore.machine.tension import BREAK_RISK, pass_tensions, tightest_of
 from knitcore.materials import material
+from tests.knitcore.machine.second_machine import verified_twice
 from tests.knitcore.symbol_charts import EVERY, chart_with, symbol_charts
 
 WIDEST = 4
@@ -34,7 +35,7 @@ MACHINE_MADE = [
 def test_every_stitch_is_read_back(place: int, finish: Finish) -> None:
     chart = chart_with(place)
     if not chart.is_plain:
-        assert knitted_stitches(verified(chart, finish=finish).text).content == chart
+        assert knitted_stitches(verified_twice(chart, finish=finish).text).content == chart
 
 
 @settings(max_examples=8)
@@ -50,13 +51,13 @@ def test_programs_knit_their_charts(chart: SymbolChart) -> None:
 @pytest.mark.parametrize("lace", ["KO/KKK\\OK;KKKKKKKKK", "PO)PPP(OP;PPPPPPPPP"])
 def test_yarn_overs_cost_no_pass_where_a_bed_cannot_tuck_and_knit(lace: str) -> None:
     machine = replace(profile("kniterate"), waste_passes=4)
-    made = verified(SymbolChart.parse(lace), machine=machine)
+    made = verified_twice(SymbolChart.parse(lace), machine=machine)
     assert made.tuck_passes == 0
     assert check_program(made.text, machine) == ()
 
 
 def test_tucks_beside_knits_cost_passes_that_are_named() -> None:
-    made = verified(SymbolChart.parse("KTKT;KKKK"), machine=profile("kniterate"))
+    made = verified_twice(SymbolChart.parse("KTKT;KKKK"), machine=profile("kniterate"))
     assert made.tuck_passes == 6
     assert made.notes == ("Tucks beside knits take 6 passes more: a bed does one of both.",)
 
@@ -70,7 +71,7 @@ def test_the_row_before_a_tight_cable_is_knitted_looser() -> None:
     number, yarn, looser = setting.number, setting.yarn, setting.looser
     with pytest.raises(InputError, match="would break"):
         stitch_program(CABLES, machine=machine, stitch_number=number, yarn=yarn)
-    made = verified(CABLES, machine=machine, stitch_number=number, yarn=yarn, looser=looser)
+    made = verified_twice(CABLES, machine=machine, stitch_number=number, yarn=yarn, looser=looser)
     assert made.spared == (
         "Stitch number 9 in course 2 gives the loops the yarn for the transfers after it."
     )
@@ -146,5 +147,5 @@ def test_what_a_machine_cannot_do_is_refused_by_row(text: str, machine: str, mes
 
 def test_like_cables_of_a_row_go_together() -> None:
     row, plain = "P[2/2R]P" * 4, "PKKKKP" * 4
-    program = verified(SymbolChart.parse(f"{row};{plain}"))
+    program = verified_twice(SymbolChart.parse(f"{row};{plain}"))
     assert program.text.count("\nrack") < 2 * 4
