@@ -54,6 +54,10 @@ STRESSES: Array = np.geomspace(0.003, 0.5, 24)
 SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
 """Stresses (N/mm) at which the model's own error is kept."""
 _FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
+_COMMON: Array = np.linspace(0.0, 1.0, 400) ** 2
+"""Parts of the largest strain at which stresses of lines are added up."""
+_TO_LOCK_UP: Array = np.append(0.0, np.geomspace(1e-4, 1.0, 400))
+"""Shares of the lock-up strain at which stresses of a law are computed."""
 _LOCKED: Array = np.concatenate([np.linspace(0.3, 0.9, 25), np.linspace(0.905, 0.995, 19)])
 """Shares of the lock-up strain that the largest of the strains may be."""
 ROUNDS = 4
@@ -122,11 +126,13 @@ def quarter_laws(
     if pure:
         return replace(flat_laws(chart, material), scale=scale)
     records = _records(phases, material)
-    whole = _parts(phases, records)
+    whole = _Lines.of(phases, records)
+    whole_parts = _parts(phases, whole, records)
     laws: list[ConstitutiveLaw] = []
     for cells, prediction in _each(patches, phases):
-        parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, records)
-        cloths = [(patches.alike, phases), (1 - patches.alike, cells)]
+        lines = _Lines.of(cells, records)
+        parts = patches.alike * whole_parts + (1 - patches.alike) * _parts(cells, lines, records)
+        cloths = [(patches.alike, whole), (1 - patches.alike, lines)]
         laws += _fitted_laws(cells, prediction, records, None if even else (parts, cloths))
     own_error = partial(_stress_log_sd, phases, patches, records)
     return QuarterLaws(tuple(laws), *_mixing(patches, chart), scale, own_error)
@@ -217,7 +223,7 @@ def _fitted_laws(
     cells: Codes,
     prediction: Prediction,
     records: list[FabricRecord],
-    phases: tuple[Array, list[tuple[float, Codes]]] | None,
+    phases: tuple[Array, list[tuple[float, _Lines]]] | None,
 ) -> list[ConstitutiveLaw]:
     """Laws of the phases that give a patch its predicted response.
 
@@ -234,11 +240,12 @@ def _fitted_laws(
     for direction in Direction:
         strains = prediction.along(direction).strain(STRESSES)
         if phases is None:
-            constants[direction.axis] = _fitted(strains)
+            constants[direction.axis] = _fitted(strains[None])
             continue
         parts, cloths = phases
-        added = _added_up(cloths, records, direction, strains, parts[direction.axis])
-        constants[direction.axis] = [_fitted(phase) for phase in added]
+        constants[direction.axis] = _fitted(
+            _added_up(cloths, direction, strains, parts[direction.axis])
+        )
     alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
     own = np.array(
         [[(r.law.modulus(d), r.law.alpha(d), r.law.beta(d)) for r in records] for d in Direction]
@@ -280,17 +287,69 @@ def _fitted_laws(
 
 
 @lru_cache(maxsize=64)
-def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
+def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> Array:
     """The constants that a law has by :func:`_fitted`, which knows no kappa."""
-    return _fitted(law_strains(law, direction, STRESSES))
+    return np.asarray(_fitted(_own_strains(law, direction)[0][None])[0])
+
+
+@lru_cache(maxsize=64)
+def _own_strains(law: ConstitutiveLaw, direction: Direction) -> tuple[Array, Array]:
+    """Strains of a law at :data:`STRESSES` and at :data:`_FINE`."""
+    return law_strains(law, direction, STRESSES), law_strains(law, direction, _FINE)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Kinds of lines of cells, course-wise and wale-wise.
+
+    Attributes
+    ----------
+    lengths : for each direction, how much of each phase there is along them, (kinds, phases), mm.
+    widths : for each direction, how wide all lines of each kind are together, (kinds,), mm.
+    """
+
+    lengths: tuple[Array, Array]
+    widths: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, cells: Codes, records: list[FabricRecord]) -> _Lines:
+        """The lines of a patch."""
+        size = [np.array([r.stitch_size_mm(d) for r in records]) for d in Direction]
+        lengths, widths = [], []
+        for along, lines in zip(Direction, (cells, cells.T), strict=True):
+            counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
+            kinds, same = np.unique(counts, axis=0, return_inverse=True)
+            lengths.append(kinds * size[along.axis])
+            widths.append(np.bincount(same.ravel()) * (kinds @ size[along.other.axis]))
+        return cls((lengths[0], lengths[1]), (widths[0], widths[1]))
+
+    def free_strain(self, along: Direction, strains: Array) -> Array:
+        """Strain at :data:`STRESSES` of lines along the pull that do not hold each other.
+
+        The phases have the ``strains`` (phases, stresses) at :data:`_FINE`. In a line all carry the
+        same force, and all lines are strained alike.
+        """
+        lengths, widths = self.lengths[along.axis], self.widths[along.axis]
+        of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
+        common = _COMMON * of_line[:, -1].min()
+        stress = widths @ np.array([np.interp(common, line, _FINE) for line in of_line])
+        return np.asarray(np.interp(STRESSES, stress / widths.sum(), common))
+
+    def held_strain(self, along: Direction, strains: Array) -> Array:
+        """Strain at :data:`STRESSES` of lines across the pull that are strained alike throughout.
+
+        One after the other, they carry the same force.
+        """
+        widths, lengths = self.lengths[along.other.axis], self.widths[along.other.axis]
+        common = _COMMON * strains[:, -1].max()
+        stress = np.array([np.interp(common, phase, _FINE) for phase in strains])
+        of_line = widths @ stress / widths.sum(axis=1, keepdims=True)
+        strain = lengths @ np.array([np.interp(STRESSES, line, common) for line in of_line])
+        return np.asarray(strain / lengths.sum())
 
 
 def _added_up(
-    cloths: list[tuple[float, Codes]],
-    records: list[FabricRecord],
-    direction: Direction,
-    strains: Array,
-    parts: Array,
+    cloths: list[tuple[float, _Lines]], direction: Direction, strains: Array, parts: Array
 ) -> Array:
     """Strains (phases, stresses) of phases that add up to those of their patch, (stresses,).
 
@@ -299,28 +358,27 @@ def _added_up(
     together they have the law that is fitted to the patch. Lines of stitches hold each other, but
     not quite: the strain is a mean of both bounds, :data:`HELD`.
     """
-    even = _strains_of(np.array([_fitted(strains)]), STRESSES)[0]
+    even = _strains_of(_fitted(strains[None]), STRESSES)[0]
     scaled = even * parts
     for _ in range(ROUNDS):
-        own = _strains_of(np.array([_fitted(phase) for phase in scaled]), _FINE)
-        for weight, cells in cloths:
-            free, held = (
-                bound(cells, records, direction, own) for bound in (_free_strain, _held_strain)
-            )
-            scaled *= (even / (free ** (1 - HELD) * held**HELD)) ** weight
+        own = _strains_of(_fitted(scaled), _FINE)
+        for weight, lines in cloths:
+            if weight:
+                free, held = lines.free_strain(direction, own), lines.held_strain(direction, own)
+                scaled *= (even / (free ** (1 - HELD) * held**HELD)) ** weight
     return np.asarray(scaled)
 
 
 def _strains_of(constants: Array, stresses: Array) -> Array:
     """Strains (laws, stresses) of laws with the constants (laws, 3) of :func:`_fitted`."""
     modulus, alpha, beta = constants.T[..., None]
-    at = np.append(0.0, np.geomspace(1e-4, 1.0, 400)) / alpha
+    at = _TO_LOCK_UP / alpha
     stress = modulus * at + beta * stiffening(alpha * at)[1]
     pairs = zip(stress, at, strict=True)
     return np.stack([np.interp(stresses, carried, strain) for carried, strain in pairs])
 
 
-def _parts(cells: Codes, records: list[FabricRecord]) -> Array:
+def _parts(cells: Codes, lines: _Lines, records: list[FabricRecord]) -> Array:
     """Ratios of the phases' strains to the cloth's at :data:`STRESSES`, (2, phases, stresses).
 
     They are half as far from 1 as in the flat composite, and as far in wide areas of one phase.
@@ -329,71 +387,27 @@ def _parts(cells: Codes, records: list[FabricRecord]) -> Array:
     contrast = (1 + wide.mean()) / 2
     ratios = []
     for direction in Direction:
-        strains = np.array([law_strains(r.law, direction, STRESSES) for r in records])
-        ratios.append(1 + contrast * (strains / _flat_strain(cells, records, direction) - 1))
+        own = [_own_strains(r.law, direction) for r in records]
+        strains, fine = (np.array(values) for values in zip(*own, strict=True))
+        ratios.append(1 + contrast * (strains / lines.free_strain(direction, fine) - 1))
     return np.array(ratios)
 
 
-def _flat_strain(cells: Codes, records: list[FabricRecord], direction: Direction) -> Array:
-    """Strain of the flat composite at :data:`STRESSES`."""
-    strains = np.stack([law_strains(r.law, direction, _FINE) for r in records])
-    return _free_strain(cells, records, direction, strains)
-
-
-def _free_strain(
-    cells: Codes, records: list[FabricRecord], direction: Direction, strains: Array
-) -> Array:
-    """Strain at :data:`STRESSES` of lines along the pull that do not hold each other.
-
-    The phases have the ``strains`` (phases, stresses) at :data:`_FINE`. In a line all carry the
-    same force, and all lines are strained alike.
-    """
-    lengths, widths = _cut(cells, records, direction)
-    of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
-    common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
-    stress = widths @ np.array([np.interp(common, line, _FINE) for line in of_line])
-    return np.asarray(np.interp(STRESSES, stress / widths.sum(), common))
-
-
-def _held_strain(
-    cells: Codes, records: list[FabricRecord], direction: Direction, strains: Array
-) -> Array:
-    """Strain at :data:`STRESSES` of lines across the pull that are strained alike throughout.
-
-    One after the other, they carry the same force.
-    """
-    widths, lengths = _cut(cells, records, direction.other)
-    common = np.linspace(0.0, 1.0, 400) ** 2 * strains[:, -1].max()
-    stress = np.array([np.interp(common, phase, _FINE) for phase in strains])
-    of_line = widths @ stress / widths.sum(axis=1, keepdims=True)
-    strain = lengths @ np.array([np.interp(STRESSES, line, common) for line in of_line])
-    return np.asarray(strain / lengths.sum())
-
-
-def _cut(cells: Codes, records: list[FabricRecord], along: Direction) -> tuple[Array, Array]:
-    """Kinds of lines of cells: how much of each phase there is along them, (kinds, phases), and
-    how wide all lines of each kind are together, (kinds,).
-    """
-    lines = cells if along is Direction.COURSE else cells.T
-    size, across = (np.array([r.stitch_size_mm(d) for r in records]) for d in (along, along.other))
-    counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
-    kinds, same = np.unique(counts, axis=0, return_inverse=True)
-    return kinds * size, np.bincount(same.ravel()) * (kinds @ across)
-
-
-def _fitted(strains: Array) -> tuple[float, float, float]:
-    """Young's modulus (N/mm), alpha and beta (N/mm) of a law with strains at :data:`STRESSES`.
+def _fitted(strains: Array) -> Array:
+    """Young's moduli (N/mm), alphas and betas (N/mm), (laws, 3), of laws with the ``strains``
+    (laws, stresses) at :data:`STRESSES`.
 
     For each alpha, modulus and beta, not below 0, follow by least squares of the relative stress.
     """
-    alpha = _LOCKED / strains[-1]
-    slopes = stiffening(np.outer(alpha, strains))[1] / STRESSES
-    line = strains / STRESSES
+    alpha = _LOCKED / strains[:, -1:]
+    slopes = stiffening(alpha[..., None] * strains[:, None])[1] / STRESSES
+    line = (strains / STRESSES)[:, None]
     # the normal equations of two unknowns, for all alphas at once
-    mixed, total = slopes @ line, line.sum()
-    determinant = line @ line * (slopes**2).sum(axis=1) - mixed**2
-    beta = np.maximum((line @ line * slopes.sum(axis=1) - mixed * total) / determinant, 0.0)
-    modulus = (total - mixed * beta) / (line @ line)
-    off = ((np.outer(modulus, line) + beta[:, None] * slopes - 1) ** 2).sum(axis=1)
-    best = int(np.argmin(np.where(modulus > 0, off, np.inf)))
-    return float(modulus[best]), float(alpha[best]), float(beta[best])
+    mixed, total, square = (slopes * line).sum(-1), line.sum(-1), (line**2).sum(-1)
+    determinant = square * (slopes**2).sum(-1) - mixed**2
+    beta = np.maximum((square * slopes.sum(-1) - mixed * total) / determinant, 0.0)
+    modulus = (total - mixed * beta) / square
+    off = ((modulus[..., None] * line + beta[..., None] * slopes - 1) ** 2).sum(-1)
+    best = np.where(modulus > 0, off, np.inf).argmin(axis=1)[:, None]
+    chosen = [np.take_along_axis(values, best, axis=1)[:, 0] for values in (modulus, alpha, beta)]
+    return np.stack(chosen, axis=1)
