@@ -135,7 +135,7 @@ format: $(VENV)/.installed-tests frontend/node_modules/.installed ## Format the 
 	cd frontend && npm run --silent format
 
 bench: $(VENV)/.installed-tests ## Print how fast it is: CPU times and ratios
-	for name in first_use mechanics swatch curl yarn files page start service readers attacks; do \
+	for name in first_use goals cost swatch curl yarn page start service readers attacks; do \
 		echo "== $$name"; $(BIN)/python -m studies.speed.$$name || exit 1; done
 
 docs: $(VENV)/.installed-tests ## Build the documentation as a site in build/site; no network needed

@@ -15,6 +15,10 @@ Look = Callable[[float], None]
 BORDER = 2
 """Stitches on each side of a border that may be turned singly."""
 _SWEEPS = 6
+_TURNED = ((1, 1), (1, 2), (2, 1))
+"""Rows and columns of the pieces that are turned."""
+_APART = 4
+"""Stitches from one to the next of the pieces that are turned together."""
 _ENOUGH = 1e-12
 
 
@@ -64,6 +68,11 @@ class _LocalCost:
         self._stitch = stitch
         have = table.log_moduli[:, None, None]
         self._cost = np.nansum((have - target[..., None]) ** 2, axis=0)
+
+    def each(self, purl: Mask) -> Array:
+        """Cost of every stitch, (rows, columns)."""
+        codes = surroundings(StitchChart(purl), stitch=self._stitch)[..., None]
+        return np.take_along_axis(self._cost, codes.astype(np.intp), axis=2)[..., 0]
 
     def around(self, purl: Mask, rows: slice, columns: slice) -> float:
         """Cost of all stitches whose surroundings a change inside the window can alter."""
@@ -119,25 +128,50 @@ def _turn(
     edge = np.zeros(purl.shape, dtype=bool)
     edge[:, :-1] |= patches[:, :-1] != patches[:, 1:]
     edge[:-1] |= patches[:-1] != patches[1:]
-    near = np.argwhere(scipy.ndimage.binary_dilation(edge, iterations=BORDER) & free)
+    near = scipy.ndimage.binary_dilation(edge, iterations=BORDER) & free
+    pieces = {(height, width): _starts(near, free, height, width) for height, width in _TURNED}
     for sweep in range(_SWEEPS):
         improved = False
-        for count, (row, column) in enumerate(rng.permutation(near).tolist()):
-            if count % 200 == 0:
-                look(0.5 + 0.5 * (sweep + count / len(near)) / _SWEEPS)
-            for height, width in ((1, 1), (1, 2), (2, 1)):
-                rows = slice(row, min(row + height, purl.shape[0]))
-                columns = slice(column, min(column + width, purl.shape[1]))
-                if not free[rows, columns].all():
-                    continue
-                before = local.around(purl, rows, columns)
-                purl[rows, columns] ^= True
-                if local.around(purl, rows, columns) < before - _ENOUGH:
-                    improved = True
-                    break
-                purl[rows, columns] ^= True
+        for place in rng.permutation(_APART**2).tolist():
+            look(0.5 + 0.5 * sweep / _SWEEPS)
+            first = divmod(place, _APART)
+            for size, starts in pieces.items():
+                improved |= _turn_far_apart(purl, starts, first, size, local)
         if not improved:
             return
+
+
+def _starts(near: Mask, free: Mask, height: int, width: int) -> Mask:
+    """Places where a piece of this size begins that may be turned."""
+    starts = near.copy()
+    for down, across in np.ndindex(height, width):
+        starts[: len(free) - down, : free.shape[1] - across] &= free[down:, across:]
+        starts[len(free) - down :] = starts[:, free.shape[1] - across :] = False
+    return starts
+
+
+def _turn_far_apart(
+    purl: Mask, starts: Mask, first: tuple[int, int], size: tuple[int, int], local: _LocalCost
+) -> bool:
+    """Turn pieces so far apart that none alters what another one costs, each where that helps."""
+    begins = np.zeros_like(starts)
+    every = tuple(slice(start, None, _APART) for start in first)
+    begins[every] = starts[every]
+    if not begins.any():
+        return False
+    # a piece alters its own stitches and those beside it, which lie in one block
+    row, column = (
+        (np.arange(side) + _APART + 1 - start) // _APART
+        for side, start in zip(purl.shape, first, strict=True)
+    )
+    block = row[:, None] * (column[-1] + 1) + column
+    turned = np.zeros_like(purl)
+    for down, across in np.ndindex(*size):
+        turned[down:, across:] |= begins[: len(purl) - down, : purl.shape[1] - across]
+    less = np.bincount(block.ravel(), (local.each(purl) - local.each(purl ^ turned)).ravel())
+    turned &= (less > _ENOUGH)[block]
+    purl ^= turned
+    return bool(turned.any())
 
 
 def _images(repeat: StitchChart) -> list[StitchChart]:
