@@ -116,7 +116,10 @@ def cluster(tmp_path: Path) -> Iterator["LocalCluster"]:
     from distributed import LocalCluster  # takes a second
 
     with LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
+        n_workers=2,
+        threads_per_worker=1,
+        dashboard_address="127.0.0.1:0",
+        local_directory=str(tmp_path),
     ) as cluster:
         yield cluster
 
