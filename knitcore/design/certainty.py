@@ -8,7 +8,7 @@ is expected to.
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from operator import attrgetter
 
 import numpy as np
@@ -199,7 +199,7 @@ def unexpected(points: Iterable[StretchPoint], material: Material) -> str:
     farthest, text = SURPRISING, ""
     for point in points:
         along = predict_pure(point.fabric, material).along(point.direction)
-        low, high = _strains(point.force_n_per_mm, along)
+        low, high = map(float, along.strain_interval(point.force_n_per_mm))
         off = abs(math.log(point.strain_along**2 / (low * high))) / math.log(high / low)
         if off > farthest:
             farthest = off
@@ -213,8 +213,18 @@ def unexpected(points: Iterable[StretchPoint], material: Material) -> str:
 
 
 def _strains(n_per_mm: float, along: Along) -> Interval:
-    low, high = along.strain_interval(n_per_mm)
-    return Interval(float(low), float(high))
+    return _pulled(along)[n_per_mm]
+
+
+@lru_cache(maxsize=16)
+def _pulled(along: Along) -> dict[float, Interval]:
+    """Intervals of the strain at all pulls of a hand, which are computed together."""
+    pulls = list(PULLS_N_PER_MM.values())
+    ends = zip(*along.strain_interval(pulls), strict=True)
+    return {
+        pull: Interval(float(low), float(high))
+        for pull, (low, high) in zip(pulls, ends, strict=True)
+    }
 
 
 def _yarn(chart: StitchChart | SymbolChart, material: Material) -> Iterator[Narrowing]:

@@ -26,7 +26,12 @@ from numpy.typing import ArrayLike
 from knitcore.base.arrays import Array
 from knitcore.base.errors import InputError
 from knitcore.chart.fabric import Direction
-from knitcore.law.stiffening import CoupledStiffening, StiffeningForm, shear_response
+from knitcore.law.stiffening import (
+    CoupledStiffening,
+    StiffeningForm,
+    StiffeningResponse,
+    shear_response,
+)
 
 DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01
 """C_xyxy assumed by the paper (Note 9), which does not measure it."""
@@ -240,7 +245,9 @@ class ConstitutiveLaw:
     ) -> tuple[Array, Array]:
         """(sigma_xx, sigma_yy) in N/mm at the given strains (arrays that broadcast)."""
         ex, ey = _strains(strain_xx, strain_yy)
-        stiff = self.stiffening.response(ex, ey, form)
+        return self._stress(ex, ey, self.stiffening.response(ex, ey, form))
+
+    def _stress(self, ex: Array, ey: Array, stiff: StiffeningResponse) -> tuple[Array, Array]:
         return (
             self.stiffness_xxxx * ex + self.stiffness_xxyy * ey + stiff.stress_xx,
             self.stiffness_yyyy * ey + self.stiffness_yyxx * ex + stiff.stress_yy,
@@ -284,6 +291,12 @@ class ConstitutiveLaw:
         self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
     ) -> Array:
         """d stress / d strain in N/mm, shape (..., 3, 3) in the order xx, yy, xy (engineering)."""
+        return self.linearised(strain_xx, strain_yy, form)[1]
+
+    def linearised(
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
+    ) -> tuple[tuple[Array, Array], Array]:
+        """:meth:`stress` and :meth:`tangent`, in the time of one of them."""
         ex, ey = _strains(strain_xx, strain_yy)
         stiff = self.stiffening.response(ex, ey, form)
         tangent = np.broadcast_to(self.stiffness, (*ex.shape, 3, 3)).copy()
@@ -291,7 +304,7 @@ class ConstitutiveLaw:
         tangent[..., 1, 1] += stiff.tangent_yy
         tangent[..., 0, 1] += stiff.tangent_xy
         tangent[..., 1, 0] += stiff.tangent_xy
-        return tangent
+        return self._stress(ex, ey, stiff), tangent
 
 
 def _strains(xx: ArrayLike, yy: ArrayLike) -> tuple[Array, Array]:

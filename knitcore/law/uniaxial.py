@@ -131,8 +131,8 @@ def _by_newton(
     for _ in range(_NEWTON_STEPS):
         other = free_transverse_strains(law, direction, strain, start=other)
         pair = _pair(direction, strain, other)
-        excess = law.stress(*pair)[along] - stress
-        tangent = law.tangent(*pair)
+        stresses, tangent = law.linearised(*pair)
+        excess = stresses[along] - stress
         slope = tangent[..., along, along] - (
             tangent[..., along, across] * tangent[..., across, along] / tangent[..., across, across]
         )
@@ -141,7 +141,9 @@ def _by_newton(
         step = np.where((step >= low) & (step <= high), step, (low + high) / 2)
         if np.all(np.abs(step - strain) <= 1e-13 * (1 + strain)):
             return np.asarray(step)
-        strain = step
+        # where the transverse stress stays at zero, as far as the tangent tells
+        ratio = tangent[..., across, along] / tangent[..., across, across]
+        strain, other = step, other - ratio * (step - strain)
     return strain
 
 
@@ -176,8 +178,8 @@ def free_transverse_strains(
     # Newton's method comes down to the root from one side.
     axis, across = direction.other.axis, np.zeros_like(axial) if start is None else start
     for _ in range(_NEWTON_STEPS):
-        pair = _pair(direction, axial, across)
-        step = law.stress(*pair)[axis] / law.tangent(*pair)[..., axis, axis]
+        stresses, tangent = law.linearised(*_pair(direction, axial, across))
+        step = stresses[axis] / tangent[..., axis, axis]
         across = across - step
         if np.all(np.abs(step) <= 1e-14 * (1 + np.abs(across))):
             break

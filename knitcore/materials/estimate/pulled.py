@@ -95,6 +95,7 @@ def _if_pulled(
     return tuple((f, _narrowed(f, of, before, after, pull)) for f, _, of, _ in known)
 
 
+@lru_cache(maxsize=16)
 def _belief(known: tuple[_Known, ...]) -> MixedModel:
     """The logarithms of modulus, alpha and beta of a material's fabrics, as far as known."""
     others = MixedModel.fit(library_values())
