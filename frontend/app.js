@@ -14,24 +14,18 @@ import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./design/s
 import { byId, firstPaint, isTyping, nextTask } from "./elements/dom.js";
 import { openAddressed } from "./sync/address.js";
 import { Keeper } from "./sync/keeper.js";
-import { sharedBanner } from "./panels/sharedbanner.js";
 import { fabricview } from "./panels/fabric/fabricview.js";
 import { panelOpener } from "./panels/registry.js";
 import { chartstrip } from "./panels/chart/chartstrip.js";
 import { messages } from "./widgets/messages.js";
-import { tips } from "./widgets/tips.js";
 import { overlaybar } from "./panels/chart/overlaybar.js";
 import { rail } from "./panels/chart/rail.js";
-import { selectionbar } from "./panels/chart/selectionbar.js";
 import { shelf } from "./panels/chart/shelf.js";
 import { split } from "./widgets/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
 import { offerTour, topbar } from "./panels/topbar.js";
 import { watchConnection } from "./services/connection.js";
-import { listenToImports } from "./panels/dialogs/importer.js";
 import { startPredictor } from "./services/predictor.js";
-import { startRelaxer } from "./services/relaxer.js";
-import { startPoser } from "./services/poser.js";
 import { Stretcher } from "./services/stretcher.js";
 import { Studio } from "./state/studio.js";
 
@@ -70,14 +64,11 @@ const retheme = () => {
 onTheme(retheme);
 
 const stretcher = new Stretcher(studio);
-startPoser(studio);
 topbar(byId("topbar"), studio, context);
-sharedBanner(byId("shared"), context);
 rail(byId("rail"), studio, context);
 await nextTask();
 
 chartstrip(byId("chart-host"), context);
-selectionbar(byId("chart-host"), context);
 /** Rows that do not balance are seldom: what mends them comes with the first. */
 let mending = false;
 studio.balance.watch(async ({ length }) => {
@@ -86,7 +77,6 @@ studio.balance.watch(async ({ length }) => {
   (await import("./panels/chart/balancebar.js")).balancebar(byId("chart-host"), studio);
 });
 messages(byId("messages"), byId("offline"), studio);
-tips();
 themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));
 await nextTask();
 
@@ -104,11 +94,9 @@ split(byId("split-rows"), "--inspector-height", {
   most: () => innerHeight - 320,
 });
 const predictAgain = startPredictor(studio);
-startRelaxer(studio);
 // Everything that follows the chart is there: now it may be painted on.
 new Painter(view, studio);
 listenToKeys(context, isTyping);
-listenToImports(context, isTyping);
 await nextTask();
 
 // The 3D view starts in a process of its own, while the page is painted.
@@ -119,8 +107,8 @@ await nextTask();
 void firstPaint().then(async () => {
   performance.mark("studio");
   void keeper.catchUp();
-  const { inspector } = await import("./panels/inspector/inspector.js");
-  themed.push(inspector(byId("inspector"), studio));
+  const { afterPaint } = await import("./panels/afterpaint.js");
+  themed.push(afterPaint(context));
 });
 
 /** Say what the service refused; that it is away, the banner says. @param {ApiError} error */

@@ -26,6 +26,9 @@ STITCH = 10.0
 """Width of a stitch at most, pixels."""
 GAP = 0.3
 """Light in the gaps between loops, over that of the yarn around them."""
+PARTS = 4
+"""A row is a whole number of such parts of a pixel high. Rows of any height would fall in step with
+pixels and out of it again over many rows, and garter would have bands."""
 AROUND = 8
 """Width of the squares of pixels whose mean light is that of the yarn around."""
 CLOSED = 5
@@ -90,6 +93,8 @@ def sheet_picture(scene: FabricScene, *, back: bool = False) -> Picture | None:
     reach = scene.ground.reach_mm
     stitch = STITCH / float(scene.ground.sizes_mm[..., 0].mean())
     scale = min(stitch, math.sqrt(PIXELS / reach.prod()), LONGEST / float(reach.max()))
+    row = PARTS * float(scene.ground.sizes_mm[..., 1].mean())
+    scale = max(math.floor(scale * row), 1) / row
     width, height = np.maximum(np.round(scale * reach).astype(int), 1).tolist()
     nothing = np.full((height, width), -np.inf, np.float32), np.empty((0, 3))
     balls = _balls(scene, scale, (width, height), -1 if back else 1)

@@ -12,7 +12,7 @@ import { along } from "../core/directions.js";
 import { Latest } from "./latest.js";
 import { limbOf, pieceIn, pieceOf, scopeIn } from "./scope.js";
 import { figure, percent } from "../core/format.js";
-import { POSES } from "../state/seeing.js";
+import { POSES, hindrance } from "../state/seeing.js";
 import { REST } from "../state/studio.js";
 
 const DELAY_MS = 25;
@@ -29,17 +29,6 @@ const CHANGED = {
 
 /** @type {Record<string, (studio: Studio, signal: AbortSignal) => AsyncGenerator<Posed>>} */
 const SHAPES = { lying, worn, pulled, hung };
-/** What the service computes for a pose, and what that is for a knitter. @type {Record<string, [string, string]>} */
-const OPERATIONS = {
-  lying: ["curl", "its shape unpinned"],
-  worn: ["limb", "its shape on the body"],
-  pulled: ["curl", "its curling edges"],
-  hung: ["hang", "its shape as it hangs"],
-};
-
-/** Say why the piece cannot be shown in a pose; "" if it can. @param {Studio} studio @param {string} pose */
-export const hindrance = (studio, pose) => (pose in OPERATIONS ? studio.tooLarge(...OPERATIONS[pose]) : "");
-
 /** @param {Studio} studio */
 export function startPoser(studio) {
   const latest = new Latest(DELAY_MS);
@@ -100,6 +89,7 @@ export function startPoser(studio) {
   studio.document.onChange(again);
   studio.materialId.listen(again);
   studio.gauges.changes.listen(again);
+  if (pose.value !== "tested") again(); // chosen before
 }
 
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */

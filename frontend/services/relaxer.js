@@ -45,6 +45,6 @@ export function startRelaxer(studio) {
       },
     );
   };
-  prediction.listen(consider);
+  prediction.watch(consider);
   stretch.listen(consider);
 }

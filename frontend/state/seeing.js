@@ -26,6 +26,17 @@ import { Grid } from "../grid/grid.js";
 /** Names of the poses. @type {Record<Pose, string>} */
 export const POSES = { flat: "Flat", lying: "Unpinned", worn: "On the body", hung: "Hanging", tested: "In a test" };
 
+/** What the service computes for a pose, and what that is for a knitter. @type {Record<string, [string, string]>} */
+const OPERATIONS = {
+  lying: ["curl", "its shape unpinned"],
+  worn: ["limb", "its shape on the body"],
+  pulled: ["curl", "its curling edges"],
+  hung: ["hang", "its shape as it hangs"],
+};
+
+/** Say why the piece cannot be shown in a pose; "" if it can. @param {import("./studio.js").Studio} studio @param {string} pose */
+export const hindrance = (studio, pose) => (pose in OPERATIONS ? studio.tooLarge(...OPERATIONS[pose]) : "");
+
 /** What to say of a shape: one that is not at rest, or of a chart that was changed, is a preview. @param {Posed} posed */
 export function wordsOf({ words, converged }) {
   return converged ? words : `${words}: a preview, not yet at rest`;

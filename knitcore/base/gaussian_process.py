@@ -98,9 +98,13 @@ class KernelModel:
         """Fit to targets (n, outputs)."""
         from scipy.linalg import cho_solve
 
+        from knitcore.base.threads import one_blas_thread
+
+        matrix = noisy_covariance(settings, samples)
         # NumPy's lets other threads go on meanwhile, SciPy's does not
-        factor = np.asarray(np.linalg.cholesky(noisy_covariance(settings, samples)), dtype=float)
-        return cls(settings, samples, factor, cho_solve((factor, True), targets))
+        with one_blas_thread():
+            factor = np.asarray(np.linalg.cholesky(matrix), dtype=float)
+            return cls(settings, samples, factor, cho_solve((factor, True), targets))
 
     def __call__(self, charts: Samples) -> tuple[Array, Array]:
         """Mean (m, outputs), and variance (m,) of an observation in units of each output's own."""

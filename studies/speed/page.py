@@ -41,7 +41,7 @@ FROM_THE_START = """if (parent === window) {
     window.blocked = [];
     const note = (what) =>
         requestAnimationFrame(() => setTimeout(() => (cloth[what] ??= performance.now())));
-    const loaded = ({ target }) => target.className === "fabric-still" && note("still");
+    const loaded = ({ target }) => target.classList.contains("fabric-still") && note("still");
     document.addEventListener("load", loaded, true);
     const shown = () => document.querySelector(".fabric[data-live]") && note("live");
     const all = { subtree: true, childList: true, attributeFilter: ["data-live"] };

@@ -52,7 +52,7 @@ def job_key(kind: str, request: str) -> str:
     """A key of everything that determines a result: the request, the operation's code and data, and
     the versions of packages that bring yarns.
 
-    The first one takes half a second.
+    The first one takes a third of a second.
     """
     digest = hashlib.sha256(request.encode()).hexdigest()  # a file's megabytes are hashed once
     packages = [extension.package for extension in extensions(Group.MATERIALS)]

@@ -5,8 +5,7 @@
  * @import {CameraSide} from "../../types.js"
  */
 
-import { hindrance } from "../../services/poser.js";
-import { POSES } from "../../state/seeing.js";
+import { POSES, hindrance } from "../../state/seeing.js";
 import { h } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { segmented } from "../../widgets/fields.js";

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info
 
+from knitcore.base.arrays import Array
 from knitcore.base.gaussian_process import KernelModel, KernelSettings, Samples, covariance
 
 SETTINGS = KernelSettings(0.5, 0.1, 1.0, 1.0, 2.0, 0.01)
@@ -40,3 +42,18 @@ def test_far_away_the_variance_grows() -> None:
         Samples(known.features[:1] + 9, known.numbers[:1], known.pure[:1]),
     )
     assert model(far)[1] > 3 * model(near)[1]
+
+
+def test_a_fit_keeps_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    threads: list[int] = []
+    factorise = np.linalg.cholesky
+
+    def watched(matrix: Array) -> Array:
+        pools = [pool for pool in threadpool_info() if pool["user_api"] == "blas"]
+        threads.extend(pool["num_threads"] for pool in pools)
+        return factorise(matrix)
+
+    monkeypatch.setattr(np.linalg, "cholesky", watched)
+    known = samples(4, 5)
+    KernelModel.fit(SETTINGS, known, known.features[:, :1])
+    assert set(threads) == {1}

@@ -1,5 +1,9 @@
 """Names of results."""
 
+import ast
+import sys
+from subprocess import run
+
 import pytest
 
 from knitcore.yarn.library import fingerprint
@@ -17,7 +21,7 @@ def package(tmp_path, monkeypatch):
     (tmp_path / "cloth" / "data" / "other.csv").write_text("1")
     (tmp_path / "cloth" / "yarn.py").write_text('FILE = "yarns.csv"\n')
     (tmp_path / "cloth" / "solve.py").write_text(
-        '"""Solve."""\n\nfrom cloth.yarn import FILE\n\n\ndef solve():\n    return 1\n'
+        '"""Solve."""\nfrom cloth.yarn import FILE\n\n\ndef solve():\n    """1."""\n    return 1\n'
     )
     (tmp_path / "cloth" / "aside.py").write_text("A = 1\n")
     monkeypatch.setattr(fingerprint, "ROOT", tmp_path)
@@ -33,7 +37,7 @@ def changes(package, name: str, text: str) -> bool:
     return code_version("cloth.solve") != before
 
 
-def test_comments_docstrings_and_layout_do_not_count(package) -> None:
+def test_comments_words_of_docstrings_and_layout_do_not_count(package) -> None:
     text = (
         '"""Solve it all."""\nfrom cloth.yarn import FILE  # the yarns\n\n\ndef solve(\n):\n'
         '    """One."""\n    return 1\n'
@@ -59,3 +63,37 @@ def test_the_solvers_reach_kernels_law_fit_and_starts() -> None:
     for name in ("yarn.kernels.rod", "law.least_squares", "yarn.paper.minimise"):
         assert f"knitcore.{name}" in modules
     assert "knitcore.prediction" not in modules
+
+
+@pytest.mark.parametrize("folder", ["knitcore", "app"])
+def test_imports_are_those_of_the_syntax_tree(folder: str) -> None:
+    missed = []
+    for file in (fingerprint.ROOT / folder).rglob("*.py"):
+        text = file.read_text(encoding="utf-8")
+        nodes = [*ast.walk(ast.parse(text))]
+        imported = {n.name for node in nodes if isinstance(node, ast.Import) for n in node.names}
+        for node in nodes:
+            if isinstance(node, ast.ImportFrom):
+                module = "." * node.level + (node.module or "")
+                dot = "." if node.module else ""
+                imported |= {module, *(f"{module}{dot}{n.name}" for n in node.names)}
+        if left_out := imported - fingerprint._read(text).imports:
+            missed.append((file, left_out))
+    assert not missed
+
+
+def test_every_process_gives_code_the_same_version() -> None:
+    """Sets have another order in each."""
+    source = "X = 1\nY = X in {'loop', 'wale', 'course', 'rib'}\n"
+    code = f"from knitcore.yarn.library.fingerprint import _read; print(_read({source!r}).digest)"
+    made = {
+        run(
+            [sys.executable, "-c", code],
+            env={"PYTHONHASHSEED": seed, "PYTHONPATH": str(fingerprint.ROOT)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in "123"
+    }
+    assert len(made) == 1
