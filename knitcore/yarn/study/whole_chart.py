@@ -260,7 +260,7 @@ class _Work(Rounds):
         """The chart's repeat, relaxed and laid out; without its mirrors, unless it is held flat."""
         repeat = self.chart.repeat()
         part = repeat.resized(
-            _least(repeat.rows, self.chart.rows), _least(repeat.columns, self.chart.columns)
+            least_of(repeat.rows, self.chart.rows), least_of(repeat.columns, self.chart.columns)
         )
         fits = part.stitches == free_cell(repeat, COARSE).stitches
         search = partial(
@@ -321,6 +321,6 @@ class _Work(Rounds):
         return self._fitted(refined, OPENING)
 
 
-def _least(repeat: int, whole: int) -> int:
+def least_of(repeat: int, whole: int) -> int:
     """Fewest rows or columns whose repetition makes up the chart; more than one if it has more."""
     return min(n for n in range(repeat, whole + 1) if whole % n == 0 and (n > 1 or whole == 1))

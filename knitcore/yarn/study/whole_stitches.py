@@ -2,9 +2,10 @@
 
 Free of force and friction, lace and cables crumple; so the cloth is pulled evenly both ways. Its
 yarn begins as the first shape of the chart and is drawn in under a take-down, as that of a repeat
-(:mod:`knitcore.yarn.loops.take_down`). A chart of up to ``MAX_STITCHES_AT_ONCE`` stitches has one
-factor in every step. In a larger one the sheet is made smaller evenly, as far as that is certified,
-before its windows and a descent of all of it follow; then come rounds.
+(:mod:`knitcore.yarn.loops.take_down`); a chart of repeats begins with one of them, relaxed. A chart
+of up to ``MAX_STITCHES_AT_ONCE`` stitches has one factor in every step. In a larger one the sheet
+is made smaller evenly, as far as that is certified, before its windows and a descent of all of it
+follow; then come rounds.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +42,7 @@ from knitcore.yarn.solve.rounds import MAX_ROUNDS, Rounds, WholeShape, after_rou
 from knitcore.yarn.solve.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarn.solve.splines import compile_kernels, relaxed_repeat
 from knitcore.yarn.solve.topology import Trajectory, clearance_at
-from knitcore.yarn.study.whole_chart import MAX_STITCHES_WHOLE, RelaxedChart, after_rounds
+from knitcore.yarn.study.whole_chart import MAX_STITCHES_WHOLE, RelaxedChart, after_rounds, least_of
 
 MAX_STITCHES_AT_ONCE = 200
 """Largest chart whose steps have one factor."""
@@ -147,17 +149,30 @@ def relax_whole_stitches(
     clock = time.process_time()
     small = count <= MAX_STITCHES_AT_ONCE
     image = ChartImage.least(whole) if small else ChartImage(whole, 0, 0, False, False)
-    graph = image.chart.graph
-    work = _Work(
-        yarn=yarn, tolerance=tolerance, rounds=rounds, kept=kept, progress=progress,
-        cancelled=cancelled, drawn=knotted(room_for_yarn(graph, yarn, loop_length_mm)),
-        convention=Convention.parse(convention),
-        goal_mm=loop_length_mm * (per_act or YarnPerAct()).of_rows(graph),
-    )  # fmt: skip
+    options: dict[str, Any] = {
+        "yarn": yarn,
+        "tolerance": tolerance,
+        "rounds": rounds,
+        "cancelled": cancelled,
+    }
+
+    def work_on(part: SymbolChart, **told: Any) -> _Work:
+        return _Work(
+            drawn=knotted(room_for_yarn(part.graph, yarn, loop_length_mm)),
+            convention=Convention.parse(convention),
+            goal_mm=loop_length_mm * (per_act or YarnPerAct()).of_rows(part.graph),
+            **options, **told,
+        )  # fmt: skip
+
+    work = work_on(image.chart, kept=kept, progress=progress)
+    part = _least_part(image.chart)
     with one_blas_thread():
+        if resume is None and part.cells.size <= MAX_STITCHES_AT_ONCE and part != image.chart:
+            resume = _laid_out(work_on(part).relaxed(None)[0], part, image.chart)
         sheet, energy, minimum, left_n = work.relaxed(resume)
     cell, state = energy.cell, minimum.state
     lines, (course, wale) = centre_lines(cell, state, cell.rows, cell.wales), state[-2:].tolist()
+    eyelets = yarn_overs(image.chart.graph)
     open_places = holes(lines, cell.wales * course, cell.rows * wale, yarn.radius_mm)
     folded = is_folded(lines, cell.wales, course, wale)
     repeat = relaxed_repeat(
@@ -170,8 +185,26 @@ def relax_whole_stitches(
         **vars(repeat) | shown, rounds=sheet.earlier + len(sheet.rounds),
         energy_change=sheet.energy_change, size_change=sheet.size_change,
         may_fall=sheet.may_fall, largest_force_n=left_n, stitches=whole, folded=folded,
-        hole_share=open_places.share, eyelet_mm2=open_places.eyelet_mm2(yarn_overs(graph)),
+        hole_share=open_places.share, eyelet_mm2=open_places.eyelet_mm2(eyelets),
         crossings=work.drawn.exact,
+    )  # fmt: skip
+
+
+def _least_part(chart: SymbolChart) -> SymbolChart:
+    """The smallest part, at least two stitches each way, whose repetition makes up a chart."""
+    repeat = chart.repeat()
+    return repeat.tile(
+        least_of(repeat.rows, chart.rows) // repeat.rows,
+        least_of(repeat.columns, chart.columns) // repeat.columns,
+    )
+
+
+def _laid_out(sheet: WholeShape, part: SymbolChart, whole: SymbolChart) -> WholeShape:
+    """The sheet of a part repeated to a whole one."""
+    up, across = whole.rows // part.rows, whole.columns // part.columns
+    return replace(
+        sheet, controls=np.tile(sheet.controls, (up, across, 1)),
+        tension_n=np.tile(sheet.tension_n, (up, across)), rounds=(),
     )  # fmt: skip
 
 
