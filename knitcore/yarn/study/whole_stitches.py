@@ -2,10 +2,10 @@
 
 Free of force and friction, lace and cables crumple; so the cloth is pulled evenly both ways. Its
 yarn begins as the first shape of the chart and is drawn in under a take-down, as that of a repeat
-(:mod:`knitcore.yarn.loops.take_down`); a chart of repeats begins with one of them, relaxed. A chart
-of up to ``MAX_STITCHES_AT_ONCE`` stitches has one factor in every step. In a larger one the sheet
-is made smaller evenly, as far as that is certified, before its windows and a descent of all of it
-follow; then come rounds.
+(:mod:`knitcore.yarn.loops.take_down`); a chart of repeats begins with one of them, relaxed. A large
+sheet is made smaller evenly, as far as that is certified, before its windows and a descent of all
+of it follow. Then come rounds, each with one factor where the chart has up to
+``MAX_STITCHES_AT_ONCE`` stitches.
 """
 
 from __future__ import annotations
@@ -45,12 +45,14 @@ from knitcore.yarn.solve.topology import Trajectory, clearance_at
 from knitcore.yarn.study.whole_chart import MAX_STITCHES_WHOLE, RelaxedChart, after_rounds, least_of
 
 MAX_STITCHES_AT_ONCE = 200
-"""Largest chart whose steps have one factor."""
+"""Largest chart whose rounds have one factor."""
 _DRAWN = Options(tolerance=1e-2, slack=1e-2, iterations=5, mended=False, leaves_saddles=False)
 """Settings of a pass while the yarn is drawn in."""
 _AT_ONCE = Options(tolerance=1e-7, slack=1e-7, iterations=150)
 _EVEN = 0.01
 """Excess of yarn up to which the sheet is not made smaller."""
+_FEW = 60
+"""Largest chart whose yarn is drawn in with one factor."""
 _LONGEST = 0.12
 """Longest part of the way on which a large sheet is drawn in, in logarithms of the length."""
 _APART = 0.5
@@ -279,7 +281,7 @@ class _Work(Rounds):
         take_down = _TakeDown(
             self.yarn, self.convention, self.goal_mm, self.cancelled, work=self,
             resume=None if resume is None else self._checked(resume),
-            **({} if self.at_once else {"longest": _LONGEST}),
+            **({} if self.drawn.cell.stitches <= _FEW else {"longest": _LONGEST}),
         )  # fmt: skip
         energy, minimum = take_down(self.drawn)
         return self.shape(energy, minimum, 1.0)
@@ -309,7 +311,7 @@ class _TakeDown(TakeDown):
 
     def stage(self, energy: StitchEnergy, state: Array, tension: Array | None) -> Minimum:
         """The state with the lengths of an energy, near enough to go on from."""
-        if self.work.at_once:
+        if energy.cell.stitches <= _FEW:
             return super().stage(energy, state, tension)
         sheet = self._smaller(energy, state, tension)
         number = round(float(energy.mean_loop_mm) * 1e3)  # so that windows end elsewhere

@@ -84,7 +84,8 @@ def test_the_pull_is_even_in_the_end() -> None:
 def test_windows_lead_where_one_factor_does(monkeypatch: pytest.MonkeyPatch) -> None:
     chart = SymbolChart.parse("K" * 18 + ";KKO/KKK\\OKKKKKO/KK")
     at_once = relax_whole_stitches(chart, ACRYLIC, LOOP_MM)
-    monkeypatch.setattr(whole_stitches, "MAX_STITCHES_AT_ONCE", 10)
+    for most in ("MAX_STITCHES_AT_ONCE", "_FEW"):
+        monkeypatch.setattr(whole_stitches, most, 10)
     shapes: list[WholeShape] = []
     in_windows = relax_whole_stitches(chart, ACRYLIC, LOOP_MM, tolerance=0.01, kept=shapes.append)
     assert in_windows.converged
