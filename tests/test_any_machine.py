@@ -72,7 +72,7 @@ LINEAR = {
     "yarn/study/yarn_tube.py": "the same",
     "yarn/solve/clasps.py": "logarithms of determinants, compared with a margin",
     "yarn/study/sweep.py": "a measure of what was found",
-    "yarn/study/whole_chart.py": "the force that is left",
+    "yarn/solve/rounds.py": "the force that is left",
     "cloth/space/curl.py": "turns what was found",
     "cloth/space/surface.py": "draws what was found",
     "linear/grid_factor.py": "the solver of cut cloth, which leaves no saddle",

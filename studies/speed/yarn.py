@@ -1,6 +1,6 @@
 """CPU seconds of relaxations and sweeps at the yarn level, with their targets.
 
-    python -m studies.speed.yarn [--sides 1 2 4 8 16] [--charts 3] [--cells-only]
+    python -m studies.speed.yarn [--sides 1 2 4 8 16] [--charts 3] [--cells-only] [--whole 12]
 
 Run with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1: idle threads of the linear algebra would count
 as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one
@@ -8,6 +8,7 @@ fabric.
 """
 
 import argparse
+import resource
 import time
 
 import numpy as np
@@ -22,6 +23,7 @@ from knitcore.yarn.solve.growth import Start
 from knitcore.yarn.solve.splines import ROUGH_FROM
 from knitcore.yarn.study.relax import relax
 from knitcore.yarn.study.sweep import sweep
+from knitcore.yarn.study.whole_stitches import relax_whole_stitches
 
 AUTHORS_POINT_S = 250.0
 FAR = {
@@ -33,10 +35,11 @@ FAR = {
 YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 LOOP_MM = 11.28
 LIMITS_S = {1: 0.04, 2: 0.2, 4: 1.0, 8: 8.0, 16: 60.0}
+ROPE = "PKKKKP;P[2/2R]P;PKKKKP;PKKKKP"
 REPEATS = {
     "lace of 12": ("KKKKKK;KO/\\OK", 2.5),
     "cable rope of 16": ("[2/2L];KKKK;KKKK;KKKK", 4.0),
-    "cable rope of 24": ("PKKKKP;P[2/2R]P;PKKKKP;PKKKKP", 9.0),
+    "cable rope of 24": (ROPE, 9.0),
     "feather and fan of 18": ("//OOOO\\\\K;KKKKKKKKK", 9.0),
     "slip mosaic of 16": ("KKKK;VKVK;KKKK;KVKV", 3.0),
     "fisherman's rib of 8": ("TP;KP;PT;PK", 2.0),
@@ -118,13 +121,37 @@ def repeats() -> None:
         print(f"{name:24}{against(cell.seconds, limit)} {cell.energy_n_mm:.6f} N·mm", flush=True)
 
 
+def whole_charts(side: int) -> None:
+    """Whole charts of ``side`` stitches, a multiple of 12, each way, with and without repeats."""
+    rng = np.random.default_rng(2)
+    scattered = [
+        "K" * side if row % 2 else "".join(rng.choice(["KKKK", "KO/K", "K\\OK"], side // 4))
+        for row in range(side)
+    ]
+    charts = {
+        "lace of repeats": SymbolChart.parse("KKKKKK;KO/\\OK").tile(side // 2, side // 6),
+        "ropes of repeats": SymbolChart.parse(ROPE).tile(side // 4, side // 6),
+        "scattered lace": SymbolChart.parse(";".join(scattered)),
+    }
+    for name, chart in charts.items():
+        whole = relax_whole_stitches(chart, YARN, LOOP_MM)
+        most_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        print(
+            f"{name}, {side} x {side}: {whole.seconds:.0f} s, at most {most_mb:.0f} MB", flush=True
+        )
+
+
 def main() -> None:
     """Print everything."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sides", type=int, nargs="*", default=[1, 2, 4, 8])
     parser.add_argument("--charts", type=int, default=3, help="random charts of each size")
     parser.add_argument("--cells-only", action="store_true")
+    parser.add_argument("--whole", type=int, help="only whole charts of this many stitches a side")
     options = parser.parse_args()
+    if options.whole is not None:
+        whole_charts(options.whole)
+        return
     relax(StitchChart.parse("K"), YARN, LOOP_MM, branch="mirrored")  # compiles
     relax(StitchChart.parse("KP/KK"), YARN, LOOP_MM, branch="mirrored")
     cells(options.sides, options.charts)

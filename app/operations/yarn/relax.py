@@ -25,10 +25,18 @@ from knitcore.yarn.study.whole_chart import WINDOWS_FROM
 
 from ...cli.options import loop_lengths
 from ...context import Context
-from ...requests.base import Ends, IntervalResult, Known, Positive, ResultModel
+from ...requests.base import Known, Positive, ResultModel
 from ...requests.charts import RepeatText
 from ...requests.fabrics import RelaxedGauge
-from ...requests.stitches_at_rest import NO_INTERVAL, AnyHistory, RestedRequest
+from ...requests.stitches_at_rest import (
+    NO_INTERVAL,
+    AnyHistory,
+    RestedRequest,
+    RestedResult,
+    hole_lines,
+    size_line,
+    unless_folded,
+)
 from ...requests.yarn_level import (
     HISTORIES,
     RestSizeResult,
@@ -117,7 +125,7 @@ class OtherShapeResult(ResultModel):
     cell_wale_mm: float
 
 
-class RelaxResult(IntervalResult):
+class RelaxResult(RestedResult):
     """The shape of least energy, free of force or held; sizes and energies of one stitch."""
 
     kind: Literal["relax"] = "relax"
@@ -128,32 +136,6 @@ class RelaxResult(IntervalResult):
         description="Rows of the repeat; at least 2 in the free branch, as are the columns."
     )
     repeat_columns: int
-    cell_course_mm: float | None = Field(
-        description="Width of a stitch; null where a cloth of other stitches folds."
-    )
-    cell_wale_mm: float | None
-    cell_course_interval_mm: Ends | None = Field(
-        description="90 % interval for knitted cloth; null for a width that was held, and for "
-        "other stitches than knits and purls."
-    )
-    cell_wale_interval_mm: Ends | None
-    thickness_mm: float = Field(description="From the lowest to the highest yarn.")
-    folded: bool | None = Field(
-        None,
-        description="True where rows or columns of the cloth stand up; null, as are the next "
-        "three, for knits and purls.",
-    )
-    hole_share: float | None = Field(
-        None, description="Part of the cloth that no yarn covers, 0 to 1; null where it folds."
-    )
-    eyelet_mm2: float | None = Field(
-        None,
-        description="Mean area of the holes of yarn overs, neighbouring ones together; null "
-        "without any, and where the cloth folds.",
-    )
-    crossings: int | None = Field(
-        None, description="Crossings of the yarn that the chart asks for, all kept."
-    )
     energy_n_mm: float
     bending_share: float
     contact_share: float
@@ -273,10 +255,7 @@ def _relaxed_others(
 ) -> RelaxResult:
     rest = request.at_rest(stitches, used, context)
     cell = rest.state.cell
-    known = {
-        name: None if rest.folded else getattr(rest, name)
-        for name in ("cell_course_mm", "cell_wale_mm", "hole_share", "eyelet_mm2")
-    }
+    known = unless_folded(rest.folded, rest)
     return RelaxResult.of(
         cell,
         **known,
@@ -363,10 +342,6 @@ def _gauge(request: RelaxRequest, result: RelaxResult, context: Context) -> Rela
     return RelaxedGauge.of(size_from_relaxation(repeat, material, cell_mm, pure_mm))
 
 
-def _between(ends: tuple[float, float] | None) -> str:
-    return "" if ends is None else f" ({ends[0]:.2f} to {ends[1]:.2f})"
-
-
 def _gauge_line(gauge: RelaxedGauge | None) -> list[str]:
     if gauge is None:
         return []
@@ -383,35 +358,19 @@ def _other_shape(name: str, shape: OtherShapeResult | None, why: str) -> list[st
     return [f"{name:16}{size}, {shape.energy_n_mm:.4f} N·mm{why}"]
 
 
-def _size(r: RelaxResult) -> str:
-    if r.cell_course_mm is None or r.cell_wale_mm is None:
-        return "has no size, as the cloth folds"
-    return (
-        f"{r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
-        f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}"
-    )
-
-
-def _other_stitches(r: RelaxResult) -> list[str]:
+def _history_lines(r: RelaxResult) -> list[str]:
     if r.crossings is None:
         return []
-    holes = "not known, as the cloth folds"
-    if r.hole_share is not None:
-        eyelets = "" if r.eyelet_mm2 is None else f", {r.eyelet_mm2:.1f} mm² an eyelet"
-        holes = f"{r.hole_share:.0%} of the cloth{eyelets}"
     friction = "" if r.friction is None else f", friction {r.friction:g}"
-    return [
-        f"history         {r.history}{friction}",
-        f"holes           {holes}",
-        f"crossings       {r.crossings}, all as the chart asks",
-    ]
+    return [f"history         {r.history}{friction}"]
 
 
 def _lines(r: RelaxResult) -> list[str]:
     return [
         f"repeat          {size_in_words(r.repeat_columns, r.repeat_rows)}, {r.branch} branch",
-        f"stitch          {_size(r)}, {r.thickness_mm:.2f} mm thick",
-        *_other_stitches(r),
+        f"stitch          {size_line(r)}",
+        *_history_lines(r),
+        *hole_lines(r),
         *_other_shape("with mirrors", r.mirrored, "; laws and learned answers are of this shape"),
         *_other_shape("without mirrors", r.unmirrored, ""),
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "

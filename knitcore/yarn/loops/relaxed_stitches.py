@@ -208,7 +208,7 @@ def relax_stitches(
     clock = time.process_time()
     image = ChartImage.least(whole)
     graph = image.chart.graph
-    drawn = _knotted(room_for_yarn(graph, yarn, loop_length_mm))
+    drawn = knotted(room_for_yarn(graph, yarn, loop_length_mm))
     lengths = loop_length_mm * (per_act or YarnPerAct()).of_rows(graph)
     take_down = TakeDown(yarn, Convention.parse(convention), lengths, cancelled)
     energy, minimum = take_down(drawn)
@@ -240,7 +240,7 @@ def relax_stitches(
         thickness_mm=plain.thickness_mm,
         folded=folded,
         hole_share=open_places.share,
-        eyelet_mm2=open_places.eyelet_mm2(_yarn_overs(graph)),
+        eyelet_mm2=open_places.eyelet_mm2(yarn_overs(graph)),
         energy_n_mm=minimum.terms.energy / cell.stitches,
         bending_share=minimum.terms.rod / minimum.terms.energy,
         crossings=drawn.exact,
@@ -254,7 +254,7 @@ def relax_stitches(
     )
 
 
-def _knotted(drawn: DrawnYarn) -> DrawnYarn:
+def knotted(drawn: DrawnYarn) -> DrawnYarn:
     """Keep in its cell how a first shape is knotted."""
     cell, state = drawn.cell, drawn.state
     lines = centre_lines(cell, state, cell.rows, cell.wales)
@@ -262,7 +262,7 @@ def _knotted(drawn: DrawnYarn) -> DrawnYarn:
     return replace(drawn, cell=replace(cell, code=tuple(code.tolist())))
 
 
-def _yarn_overs(graph: StitchGraph) -> int:
+def yarn_overs(graph: StitchGraph) -> int:
     """How many runs of neighbouring yarn overs a repeat has."""
     over = (graph.act == YarnAct.OVER) & (np.diff(graph.first, axis=1) == 0)
     return int((over & ~np.roll(over, 1, axis=1)).sum())

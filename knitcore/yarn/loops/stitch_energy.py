@@ -74,3 +74,42 @@ class StitchEnergy(CellEnergy):
         )
         slope.gradient[-2:] -= self.pull_n
         return slope
+
+
+@dataclass(frozen=True, eq=False)
+class SpreadEnergy(StitchEnergy):
+    """The energy of a cloth that is held spread.
+
+    Parameters
+    ----------
+    spread_n_per_mm : even pull both ways, per mm of the cloth as it then is. Its work is the pull
+        times the area.
+    """
+
+    spread_n_per_mm: float = 0.0
+
+    @property
+    def _per_stitch_n_per_mm(self) -> float:
+        return self.spread_n_per_mm * self.cell.stitches
+
+    def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
+        """Parts of the energy; the work of the pulls counts with the spacing."""
+        terms = super().value(state, curve, pairs)
+        work = self._per_stitch_n_per_mm * float(state[-2] * state[-1])
+        return replace(terms, spacing=terms.spacing - work)
+
+    def derivatives(
+        self, state: Array, curve: Array, pairs: Pairs, start: Ints, tension: Array,
+        *, hessian: bool = True, sparse: bool = False, lengths: bool = True,
+    ) -> Slope:  # fmt: skip
+        """Gradient and Hessian of the Lagrangian, with the pulls."""
+        slope = super().derivatives(
+            state, curve, pairs, start, tension, hessian=hessian, sparse=sparse, lengths=lengths
+        )
+        pull = self._per_stitch_n_per_mm
+        slope.gradient[-2:] -= pull * state[[-1, -2]]
+        if slope.hessian is not None:
+            slope.hessian[[-2, -1], [-1, -2]] -= pull
+        if slope.sparse is not None:
+            slope.sparse.sizes[[0, 1], [-1, -2]] -= pull
+        return slope

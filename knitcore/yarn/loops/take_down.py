@@ -38,8 +38,6 @@ _SCALES = tuple(0.45 * 1.2**k for k in range(8))
 _LAYER_RADII = 1.8
 _ROOM = 1.1
 """Least distance of strands in the first shape, in diameters of the core."""
-_STEP = 0.25
-"""Longest part of the way, in logarithms of the length."""
 _LAST_STEP, _LEAST_STEP = 0.08, 0.015
 """Parts that are not halved towards the end, and the least that is tried after a lock."""
 _OVERLONG = 0.02
@@ -81,12 +79,15 @@ class TakeDown:
     ----------
     yarn, convention : of the energy.
     goal_mm : (rows,) mean loop length of each row in the cloth.
+    cancelled : called before every step; True stops with CancelledError.
+    longest : longest part of the way at a time, in logarithms of the length.
     """
 
     yarn: YarnModel
     convention: Convention
     goal_mm: Array
     cancelled: Cancelled | None = None
+    longest: float = 0.25
 
     def __call__(self, drawn: DrawnYarn) -> tuple[StitchEnergy, Minimum]:
         """The state with the prescribed yarn, under the take-down.
@@ -122,16 +123,15 @@ class TakeDown:
     def _drawn_in(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum]:
         begin = drawn.loop_lengths_mm
         whole = float(np.log(begin / self.goal_mm).max())
-        energy = self.energy(drawn.cell, begin, pull)
-        last = self._stage(energy, drawn.state, None)
-        done, most = 0.0, _STEP
+        energy, last, done = self.begun(drawn, pull)
+        most = self.longest
         while done < 1.0:
             left = whole * (1.0 - done)
             step = min(left, most, max(0.5 * left, _LAST_STEP))
             part = 1.0 if step == left else done + step / whole
-            nearer = self.energy(energy.cell, begin ** (1.0 - part) * self.goal_mm**part, pull)
+            nearer = self.energy(energy.cell, self.lengths_mm(begin, part), pull)
             try:
-                minimum = self._stage(nearer, last.state, last.tension)
+                minimum = self.stage(nearer, last.state, last.tension)
                 if part == 1.0:
                     check_length(nearer, minimum)
             except (ConvergenceError, UnravelledError):
@@ -141,8 +141,21 @@ class TakeDown:
                 continue
             energy, last = self._coarser(nearer, minimum, pull)
             done = part
-            most = min(1.3 * most, _STEP)
+            self.reached(energy, last, done)
+            most = min(1.3 * most, self.longest)
         return energy, last
+
+    def lengths_mm(self, begin_mm: Array, part: float) -> Array:
+        """(rows,) loop lengths where a part of the way is done."""
+        return np.asarray(begin_mm ** (1.0 - part) * self.goal_mm**part)
+
+    def begun(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum, float]:
+        """The first shape under its pull, and the part of the way that is done."""
+        energy = self.energy(drawn.cell, drawn.loop_lengths_mm, pull)
+        return energy, self.stage(energy, drawn.state, None), 0.0
+
+    def reached(self, energy: StitchEnergy, minimum: Minimum, done: float) -> None:
+        """Take note of a part of the way that is done."""
 
     def _coarser(
         self, energy: StitchEnergy, minimum: Minimum, pull: float
@@ -159,7 +172,14 @@ class TakeDown:
             return energy, minimum
         return coarser, replace(minimum, state=coarse)
 
-    def _stage(self, energy: StitchEnergy, state: Array, tension: Array | None) -> Minimum:
+    def stage(self, energy: StitchEnergy, state: Array, tension: Array | None) -> Minimum:
+        """The state with the lengths of an energy, near enough to go on from.
+
+        Raises
+        ------
+        ConvergenceError, UnravelledError
+            If the yarn locks.
+        """
         minimum = minimise(energy, state, tension=tension, options=_STAGE, cancelled=self.cancelled)
         if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
             raise ConvergenceError("cores overlap")

@@ -141,7 +141,8 @@ class WindowEnergy(CellEnergy):
     resting_curve : (rows * S, 4, 3) the curve around.
     own_rows : rows of the cell that have free stitches.
     length_mm : (k,) length of yarn that each of them is to have in the cell.
-
+    stitch_mm : length of yarn that counts as one stitch of the sheet; None for the mean of the
+        window's rows.
     around : surroundings of the free stitches where the sheet lies flat; None where it does not.
 
     ``flat`` holds the middle of every free stitch at height zero, its foot, and its posture.
@@ -154,6 +155,12 @@ class WindowEnergy(CellEnergy):
     own_rows: Ints
     length_mm: Array
     around: Surroundings | None
+    stitch_mm: float | None = None
+
+    @property
+    def stitch_of_yarn_mm(self) -> float:
+        """Length of yarn that counts as one stitch where a yarn does not touch itself."""
+        return self.mean_loop_mm if self.stitch_mm is None else self.stitch_mm
 
     @cached_property
     def prescribed_mm(self) -> Array:
@@ -266,6 +273,7 @@ def window_energy(
         resting_curve=curve, own_rows=own_rows,
         length_mm=row_lengths(cell, curve)[own_rows] + share,
         around=Surroundings.of(sheet.cell).at(rows.own, wales.own) if flat else None,
+        stitch_mm=shortest if (shortest := sheet.stitch_of_yarn_mm) < sheet.mean_loop_mm else None,
     )  # fmt: skip
     state = np.concatenate([here[free].ravel(), sizes])
     return energy, state

@@ -1,44 +1,26 @@
-"""A whole chart at the yarn level: its windows relaxed in turn, and the sheet together.
+"""A whole chart of knits and purls at the yarn level, relaxed in rounds.
 
-A cell of thousands of stitches is too large for one factor. Its shape is found in rounds. A pass
-relaxes windows one after the other by Newton steps, each with the yarn around it at rest (the
-alternating method of Schwarz); where the next round's windows end lies in the middle of this
-one's. Long waves, the sizes of the sheet, and yarn that passes along a course take many passes;
-these come from a descent of all unknowns at once (:mod:`knitcore.yarn.solve.polish`).
-
-Rounds that bring little may have come to a saddle, where a symmetric start stays. Before they end,
-every window is therefore asked for a direction of negative curvature, and leaves along it. A chart
-of up to ``MAX_STITCHES`` stitches ends in Newton's method for the sheet, at a minimum.
+A chart of up to ``MAX_STITCHES`` stitches ends in Newton's method for the sheet, at a minimum.
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain, zip_longest
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.base.arrays import Array
 from knitcore.base.bounds import check_count, check_range
-from knitcore.base.errors import (
-    Cancelled,
-    ConvergenceError,
-    InputError,
-    UnravelledError,
-    check_cancelled,
-)  # fmt: skip
-from knitcore.base.threads import on_halves, one_blas_thread
+from knitcore.base.errors import Cancelled, ConvergenceError, InputError, UnravelledError
+from knitcore.base.threads import one_blas_thread
 from knitcore.chart.stitch_chart import StitchChart, check_stitches
-from knitcore.yarn.kernels.structures import Pairs
-from knitcore.yarn.model.cell import YarnCell, free_cell, plain_cell
-from knitcore.yarn.model.constraints import foot_slopes, lean_weights, middle_weights, tip_weights
+from knitcore.yarn.model.cell import free_cell, plain_cell
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarn.model.input_checks import check_loop
-from knitcore.yarn.model.neighbours import reaches
 from knitcore.yarn.model.relaxed_cell import Branch
 from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.model.tiling import refined_state, tiled_state
@@ -52,9 +34,10 @@ from knitcore.yarn.solve.growth import (
     with_stiff_shell,
 )  # fmt: skip
 from knitcore.yarn.solve.images import same_for_images
-from knitcore.yarn.solve.newton import COURSE, TIGHT, WALE, Minimum, Options, minimise
-from knitcore.yarn.solve.polish import PAIR_CAP, polished
-from knitcore.yarn.solve.search import RELAXED, UNSETTLED, outcome, overlong
+from knitcore.yarn.solve.newton import TIGHT, Minimum, Options, minimise
+from knitcore.yarn.solve.polish import PAIR_CAP
+from knitcore.yarn.solve.rounds import EXPLORED, MAX_ROUNDS, Rounds, WholeShape
+from knitcore.yarn.solve.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarn.solve.splines import (
     COARSE,
     ROUGH,
@@ -64,101 +47,23 @@ from knitcore.yarn.solve.splines import (
     relaxed_repeat,
 )  # fmt: skip
 from knitcore.yarn.solve.topology import SKIN, Trajectory, clearance_at
-from knitcore.yarn.solve.windows import Window, each, row_lengths, touch, window_energy, windows
 from knitcore.yarn.study.lowest import MAX_STITCHES, without_mirrors
 
 MAX_STITCHES_WHOLE = 4_000
 """Largest chart that is relaxed as a whole."""
-MAX_ROUNDS = 200
-_WINDOW = 8
-"""Most rows and wales of a window."""
 WINDOWS_FROM = 100
 """Cells of at least this many stitches relax faster, and mostly to lower energies, in windows than
 with one factor."""
 SECONDS_PER_STITCH = 0.25
 """CPU time (measured, an upper estimate)."""
-_FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 2, 0))
-"""Where the first window of a round begins, round after round."""
 _GROWING = Options(tolerance=1e-3, iterations=4, mended=False)
-_PASS = Options(tolerance=1e-6, iterations=3, mended=False)
-_LAST_PASS = Options(tolerance=1e-6, iterations=6)
-"""Settings of the last pass: its steps keep the lengths of yarn, which no later pass restores."""
-_PROBE = Options(tolerance=1e-3, iterations=4, damping=0.1, mended=False)
-"""Settings of a pass whose windows leave saddles: they count as settled early, and seek one."""
 _EXACT_FLAT = 36
 """Largest chart laid flat that ends in Newton's method: what holds it is not in the sparse matrix,
 which takes many damped steps."""
-_DESCENT_STEPS = 20
-_SIZES = 10.0
-"""Sizes may still change by this many times the tolerance, as the energy near its minimum hardly
-depends on them."""
-_EXPLORED = 4e-3
-"""Least tolerance on the coarser grid."""
 _REPEAT = 36
 """A chart with a repeat of up to this many stitches starts from that, relaxed."""
 _PATIENCE = 12
 """Passes in which a core may fail to grow."""
-
-
-@dataclass(frozen=True, eq=False)
-class WholeShape:
-    """A chart on its way to its shape of least energy, from which it can be continued.
-
-    Attributes
-    ----------
-    controls : (rows, controls, 3) control points, mm, without the drift of the cell.
-    sizes_mm : (2,) size of a stitch.
-    tension_n : (rows, wales).
-    core_radius_mm : core that the yarn has so far.
-    fine : whether it is on the finer of the two grids.
-    rounds : energy of a stitch, N·mm, its width and its height, mm, after each round on this grid.
-    earlier : rounds on the coarser grid, once on the finer one.
-    evaluations : of the energy, in windows and of the sheet.
-    """
-
-    controls: Array
-    sizes_mm: Array
-    tension_n: Array
-    core_radius_mm: float
-    fine: bool = False
-    rounds: tuple[tuple[float, float, float], ...] = ()
-    earlier: int = 0
-    evaluations: int = 0
-
-    @property
-    def state(self) -> Array:
-        """Unknowns of the plain cell."""
-        return np.concatenate([self.controls.ravel(), self.sizes_mm])
-
-    @property
-    def energy_change(self) -> float:
-        """Part of the energy that the last round took away; infinite before the second."""
-        return self._changes[0]
-
-    @property
-    def size_change(self) -> float:
-        """Larger relative change of the two sizes in the last round; infinite before the second."""
-        return max(map(abs, self._changes[1:]))
-
-    @property
-    def may_fall(self) -> float:
-        """Part of the energy that further rounds may take away: the last change times all rounds.
-
-        An upper bound if the changes shrink at least as fast as 1/n², n being the round.
-        """
-        return abs(self.energy_change) * (self.earlier + len(self.rounds))
-
-    @property
-    def _changes(self) -> tuple[float, float, float]:
-        if len(self.rounds) < 2:
-            return (np.inf, np.inf, np.inf)
-        energy, wide, high = (b / a - 1.0 for a, b in zip(*self.rounds[-2:], strict=True))
-        return -energy, wide, high
-
-    @property
-    def change(self) -> float:
-        """Smallest tolerance that the last round meets; infinite before the second."""
-        return max(abs(self.energy_change), self.size_change / _SIZES)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -239,8 +144,9 @@ def relax_whole(
     for length in np.unique(lengths):
         check_loop(yarn, float(length))
     work = _Work(
-        chart, yarn, np.resize(lengths, chart.rows), Convention.parse(convention), flat,
-        tolerance, rounds, kept, progress, cancelled,
+        chart=chart, yarn=yarn, loop_lengths_mm=np.resize(lengths, chart.rows),
+        convention=Convention.parse(convention), flat=flat, tolerance=tolerance, rounds=rounds,
+        kept=kept, progress=progress, cancelled=cancelled,
     )  # fmt: skip
     with one_blas_thread():
         return work.relaxed(resume)
@@ -253,26 +159,30 @@ def explored(energy: CellEnergy, cancelled: Cancelled | None = None) -> Minimum:
     Newton's method leads from there.
     """
     work = _Work(
-        StitchChart(energy.cell.purl), energy.yarn, energy.loop_length_mm, energy.convention,
-        False, _EXPLORED, MAX_ROUNDS, None, None, cancelled,
+        chart=StitchChart(energy.cell.purl), yarn=energy.yarn,
+        loop_lengths_mm=energy.loop_length_mm, convention=energy.convention, tolerance=EXPLORED,
+        rounds=MAX_ROUNDS, cancelled=cancelled,
     )  # fmt: skip
     with one_blas_thread():
         _, minimum, _ = work.mended(work.settled(work.grown(work.first_shape())))
     return minimum
 
 
-@dataclass(frozen=True, eq=False)
-class _Work:
+def after_rounds(sheet: WholeShape, left_n: float) -> str:
+    """The note on a shape that rounds led to."""
+    return (
+        f"The last of {sheet.earlier + len(sheet.rounds)} rounds changed the energy by "
+        f"{-sheet.energy_change:+.2%} and a size by {sheet.size_change:.2%}; more rounds may take "
+        f"up to {sheet.may_fall:.1%} of the energy away. Forces of up to {left_n:.1e} N are left "
+        "on the yarn."
+    )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Work(Rounds):
     chart: StitchChart
-    yarn: YarnModel
     loop_lengths_mm: Array
     convention: Convention
-    flat: bool
-    tolerance: float
-    rounds: int
-    kept: Callable[[WholeShape], None] | None
-    progress: Callable[[float, float], None] | None
-    cancelled: Cancelled | None
 
     def relaxed(self, resume: WholeShape | None) -> RelaxedChart:
         clock = time.process_time()
@@ -287,11 +197,7 @@ class _Work:
             raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
         rounds = sheet.earlier + len(sheet.rounds)
         changes = (sheet.energy_change, sheet.size_change, sheet.may_fall)
-        note = (
-            f"The last of {rounds} rounds changed the energy by {-sheet.energy_change:+.2%} and a "
-            f"size by {sheet.size_change:.2%}; more rounds may take up to {sheet.may_fall:.1%} of "
-            f"the energy away. Forces of up to {left_n:.1e} N are left on the yarn."
-        )
+        note = after_rounds(sheet, left_n)
         exact = self._exact(energy, minimum)
         if exact is not None:
             minimum, changes = exact, (0.0, 0.0, 0.0)
@@ -325,17 +231,6 @@ class _Work:
             return None
         return minimum if outcome(energy, minimum) == RELAXED else None
 
-    def mended(self, sheet: WholeShape) -> tuple[WholeShape, Minimum, float]:
-        """The sheet after a last pass that gives every course its length, as a minimum, and the
-        largest force that is left, N."""
-        energy = self.energy(sheet)
-        for number in range(len(_FIRSTS)):  # again where windows failed and the lengths with them
-            sheet = self._one_pass(sheet, energy, _LAST_PASS, number)
-            minimum, left_n = self._minimum(energy, sheet)
-            if not overlong(energy, minimum):
-                break
-        return sheet, minimum, left_n
-
     def energy(self, sheet: WholeShape) -> CellEnergy:
         """Energy of the whole sheet."""
         grid, spacing = (
@@ -365,7 +260,7 @@ class _Work:
         """The chart's repeat, relaxed and laid out; without its mirrors, unless it is held flat."""
         repeat = self.chart.repeat()
         part = repeat.resized(
-            _least(repeat.rows, self.chart.rows), _least(repeat.columns, self.chart.columns)
+            least_of(repeat.rows, self.chart.rows), least_of(repeat.columns, self.chart.columns)
         )
         fits = part.stitches == free_cell(repeat, COARSE).stitches
         search = partial(
@@ -408,42 +303,12 @@ class _Work:
                 break
             yarn = with_stiff_shell(replace(self.yarn, core_radius_mm=sheet.core_radius_mm))
             energy = replace(self.energy(sheet), yarn=yarn)
-            grown = self._fitted(self._one_pass(sheet, energy, _GROWING, round_), OPENING)
+            grown = self._fitted(self.one_pass(sheet, energy, _GROWING, round_), OPENING)
             stuck = 0 if grown.core_radius_mm > sheet.core_radius_mm else stuck + 1
             core = max(sheet.core_radius_mm, grown.core_radius_mm)
             sheet = replace(grown, core_radius_mm=core)
-            self._tell(sheet)
+            self.tell(sheet)
         raise ConvergenceError(does_not_fit(self.yarn, sheet.core_radius_mm))
-
-    def settled(self, sheet: WholeShape) -> WholeShape:
-        """Rounds until the energy settles, and no window knows how to lower it."""
-        enough = self.tolerance if sheet.fine else max(self.tolerance, _EXPLORED)
-        probed = False
-        while len(sheet.rounds) < self.rounds:
-            settled = sheet.change <= enough
-            if settled and probed:
-                break
-            probed = settled
-            number = len(sheet.rounds)
-            energy = self.energy(sheet)
-            sheet = self._one_pass(sheet, energy, _PROBE if probed else _PASS, number)
-            path = Trajectory(energy, sheet.state, PAIR_CAP)
-            lowered = polished(
-                energy, path, sheet.tension_n.mean(axis=1),
-                _windows(energy.cell, path.clearance.pairs, number), flat=self.flat,
-                steps=_DESCENT_STEPS, cancelled=self.cancelled,
-            )  # fmt: skip
-            del path  # its list of pairs is most of the memory
-            per_stitch = lowered.terms.energy / energy.cell.stitches
-            wide, high = lowered.state[-2:].tolist()
-            sheet = replace(
-                sheet, controls=energy.cell.controls(lowered.state), sizes_mm=lowered.state[-2:],
-                tension_n=np.tile(lowered.tension[:, None], energy.cell.wales),
-                rounds=(*sheet.rounds, (per_stitch, wide, high)),
-                evaluations=sheet.evaluations + lowered.evaluations,
-            )  # fmt: skip
-            self._tell(sheet)
-        return sheet
 
     def _refined(self, sheet: WholeShape) -> WholeShape:
         """The sheet on the finer grid."""
@@ -455,117 +320,7 @@ class _Work:
         # between the old samples the cores may overlap
         return self._fitted(refined, OPENING)
 
-    def _one_pass(
-        self, sheet: WholeShape, energy: CellEnergy, options: Options, number: int = 0
-    ) -> WholeShape:
-        """The sheet after its windows have been relaxed in turn, two apart at a time."""
-        controls, tension = sheet.controls.copy(), sheet.tension_n.copy()
-        curve = energy.curve(sheet.state)
-        missing = energy.loop_length_mm - row_lengths(energy.cell, curve) / energy.cell.wales
 
-        def settled(window: Window) -> Callable[[], int] | None:
-            """Relax a window; returned is a function that lays it into the sheet and tells how many
-            evaluations it took, or None where the window cannot be relaxed."""
-            rows, wales = window
-            part, state = window_energy(
-                energy, controls, sheet.sizes_mm, window, missing, flat=self.flat
-            )
-            pulls = tension[np.ix_(rows.own, wales.own)].mean(axis=1)
-            try:
-                minimum = minimise(
-                    part, state, tension=np.concatenate([pulls, np.zeros(len(part.held))]),
-                    fixed=(COURSE, WALE), options=options,
-                )  # fmt: skip
-            except (ConvergenceError, UnravelledError):  # the next windows divide it elsewhere
-                return None
-
-            def lay() -> int:
-                place = np.ix_(rows.stitches, each(wales.stitches, energy.cell.grid.controls))
-                block = controls[place]
-                block[part.cell.free] = minimum.state[:-2].reshape(-1, 3)
-                controls[place] = block
-                tension[np.ix_(rows.own, wales.own)] = minimum.tension[: len(rows.own), None]
-                return minimum.evaluations
-
-            return lay
-
-        laid, evaluations = 0, sheet.evaluations
-        near = clearance_at(energy, sheet.state, 2.0 + SKIN)
-        covering = _windows(energy.cell, near.pairs, number)
-        del near  # its list of pairs is most of the memory
-        for some in _side_by_side(covering):
-            check_cancelled(self.cancelled)
-            for lay in chain.from_iterable(on_halves(lambda of: [*map(settled, of)], some, 2)):
-                if lay is not None:
-                    evaluations += lay()
-                    laid += 1
-        if not laid:
-            raise UnravelledError("No window of the chart could be relaxed.")
-        return replace(sheet, controls=controls, tension_n=tension, evaluations=evaluations)
-
-    def _minimum(self, energy: CellEnergy, sheet: WholeShape) -> tuple[Minimum, float]:
-        """The sheet as a minimum, and the largest force that is left, N."""
-        path = Trajectory(energy, sheet.state, PAIR_CAP)
-        tension = sheet.tension_n.mean(axis=1)
-        slope = path.slope(tension, hessian=False, lengths=False)
-        minimum = Minimum(
-            state=sheet.state, tension=tension, terms=path.here.terms,
-            force=slope.gradient[-2:].copy(), min_distance_mm=path.min_distance_mm,
-            converged=sheet.change <= self.tolerance, stable=False, steps=0,
-            evaluations=sheet.evaluations,
-        )  # fmt: skip
-        left = slope.gradient[:-2].reshape(*sheet.controls.shape)
-        if self.flat:
-            _take_held_forces(energy.cell, left)
-        return minimum, float(np.abs(left).max())
-
-    def _tell(self, sheet: WholeShape) -> None:
-        if self.kept is not None:
-            self.kept(sheet)
-        if self.progress is not None:
-            # the logarithm of the change falls about evenly
-            there = max(sheet.change, self.tolerance)
-            near = np.log(min(there, 1.0)) / np.log(self.tolerance) if there < np.inf else 0.0
-            share = max(float(near), len(sheet.rounds) / self.rounds)
-            core = self.yarn.core_radius_mm
-            grown = sheet.core_radius_mm / core if core else 1.0
-            self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)
-
-
-def _take_held_forces(cell: YarnCell, forces: Array) -> None:
-    """Take from the forces (rows, controls, 3) on a sheet laid flat what holds it: the middles,
-    postures and feet of its stitches."""
-    grid = cell.grid
-    held = np.array([of(grid)[:-1] for of in (middle_weights, tip_weights, lean_weights)])
-    heights = forces[..., 2].reshape(-1, grid.controls)
-    heights -= _within(held, heights)
-    along = forces[..., 1]
-    along -= _within(foot_slopes(grid, cell.wales), along)
-
-
-def _within(rows: Array, forces: Array) -> Array:
-    """The part of forces (n, k) that forces along rows (m, k) can balance."""
-    return np.asarray(np.linalg.lstsq(rows.T, forces.T, rcond=None)[0].T @ rows)
-
-
-def _least(repeat: int, whole: int) -> int:
+def least_of(repeat: int, whole: int) -> int:
     """Fewest rows or columns whose repetition makes up the chart; more than one if it has more."""
     return min(n for n in range(repeat, whole + 1) if whole % n == 0 and (n > 1 or whole == 1))
-
-
-def _windows(cell: YarnCell, pairs: Pairs, number: int) -> list[Window]:
-    """Windows with as many resting stitches around them as strands reach."""
-    around = reaches(pairs, cell.grid.samples, (cell.rows, cell.wales))
-    return windows(around, _WINDOW, _FIRSTS[number % len(_FIRSTS)])
-
-
-def _side_by_side(covering: list[Window]) -> Iterator[list[Window]]:
-    """The windows, by twos where neither touches the other."""
-    half = -(-len(covering) // 2)
-    for first, second in zip_longest(covering[:half], covering[half:]):
-        if second is None:
-            yield [first]
-        elif touch(first, second):
-            yield from ([first], [second])
-        else:
-            yield [first, second]

@@ -18,10 +18,11 @@ from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.start_shape import start_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.growth import FIRST_OPENING, core_that_fits
+from knitcore.yarn.solve.rounds import WholeShape
 from knitcore.yarn.solve.topology import clearance_at
 from knitcore.yarn.solve.windows import each, row_lengths, touch, window_energy, windows
 from knitcore.yarn.study.relax import relax
-from knitcore.yarn.study.whole_chart import WholeShape, relax_whole
+from knitcore.yarn.study.whole_chart import relax_whole
 from tests.knitcore.yarn.relaxed import relaxed
 
 SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
@@ -177,20 +178,6 @@ def test_the_lengths_of_windows_add_up_to_those_of_the_courses(sheet: Sheet) -> 
 def test_wrong_input_is_refused(options: dict[str, Any], problem: str) -> None:
     with pytest.raises(InputError, match=problem):
         relax_whole(StitchChart(PURL), SAMPLE.yarn, **{"loop_length_mm": 11.0} | options)
-
-
-def test_a_chart_is_settled_when_neither_energy_nor_size_changes_much() -> None:
-    sheet = WholeShape(np.zeros((1, 12, 3)), np.ones(2), np.zeros((1, 1)), 0.3)
-    assert sheet.change == np.inf
-    after = replace(sheet, rounds=((0.4, 3.0, 2.0), (0.25, 3.0, 2.0), (0.2, 2.7, 2.1)))
-    assert after.energy_change == pytest.approx(0.2)
-    assert after.size_change == pytest.approx(0.1)
-    assert after.may_fall == pytest.approx(0.6)
-    assert replace(after, earlier=2).may_fall == pytest.approx(1.0)
-    assert after.change == pytest.approx(0.2)
-    narrower = replace(sheet, rounds=((0.2, 3.0, 2.0), (0.2, 2.7, 2.1)))
-    assert narrower.energy_change == 0.0
-    assert narrower.change == pytest.approx(0.01)  # a tenth of the size's
 
 
 @pytest.mark.slow
