@@ -158,12 +158,12 @@ def relax_whole_stitches(
         "cancelled": cancelled,
     }
 
-    def work_on(part: SymbolChart, **told: Any) -> _Work:
+    def work_on(part: SymbolChart, **more: Any) -> _Work:
         return _Work(
             drawn=knotted(room_for_yarn(part.graph, yarn, loop_length_mm)),
             convention=Convention.parse(convention),
             goal_mm=loop_length_mm * (per_act or YarnPerAct()).of_rows(part.graph),
-            **options, **told,
+            **options, **more,
         )  # fmt: skip
 
     work = work_on(image.chart, kept=kept, progress=progress)

@@ -1,11 +1,15 @@
 """The code of the clasps: the same for all shapes of a fabric, another where yarn passed yarn."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from knitcore.chart.stitch_chart import StitchChart
+from knitcore.chart.symbol_chart import SymbolChart
+from knitcore.yarn.loops.drawn_yarn import drawn_yarn
 from knitcore.yarn.model.cell import mirrored_cell, plain_cell
 from knitcore.yarn.model.spline import SplineGrid
 from knitcore.yarn.model.start_shape import start_state
@@ -68,3 +72,21 @@ def test_a_strand_pushed_through_another_is_noticed(text):
     controls[0, :16][near_head, 2] *= -3.0
     through = cell.state(controls, state[-2], state[-1])
     assert not cell_is_knitted(cell, through)
+
+
+@pytest.mark.slow
+def test_rounding_does_not_spoil_the_code_of_a_large_chart() -> None:
+    rng, rows = np.random.default_rng(2), []
+    for _ in range(12):
+        row = ""
+        while len(row) < 24:
+            holds = len(row) <= 21 and rng.random() < 0.25
+            row += ("O/K", "\\OK")[int(rng.integers(2))] if holds else "K"
+        rows += ["K" * 24, row]
+    drawn = drawn_yarn(SymbolChart.parse(";".join(rows)).graph, 7.3224, 7.3224, 1.332)
+    size = 24.0 * drawn.state[-2:]
+    codes = [
+        clasp_code(centre_lines(replace(drawn.cell, grid=grid), drawn.state, 24, 24), *size)
+        for grid in (SplineGrid(drawn.cell.grid.controls, samples) for samples in (3, 4))
+    ]
+    assert same_clasps(*codes)
