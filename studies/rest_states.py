@@ -12,8 +12,7 @@ about its own axis is open, since nothing in the energy resists that: *turning* 
 strongly it is bent, yarn that is *held* also to which side. The truth lies between.
 
 It prints sizes over stockinette's, rms factors, what is chosen on the other fabrics
-(:mod:`studies.claims`), the stretch of acrylic seed along the rows, and how sizes depend on the
-start and on the cell.
+(:mod:`studies.claims`), and the stretch of acrylic seed along the rows.
 """
 
 import argparse
@@ -37,16 +36,13 @@ from knitcore.yarn.kernels.scatter import scatter_gradient, scatter_local
 from knitcore.yarn.kernels.structures import Ints, Pairs
 from knitcore.yarn.kernels.tiles import one_tile
 from knitcore.yarn.library.yarns import yarn_for
-from knitcore.yarn.model.cell import plain_cell
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
 from knitcore.yarn.model.relaxed_cell import Branch
-from knitcore.yarn.model.tiling import tiled_state
 from knitcore.yarn.model.yarn_model import YarnModel
 from knitcore.yarn.solve.friction import Rubbing, rub
 from knitcore.yarn.solve.newton import Options, minimise
 from knitcore.yarn.solve.search import check_reached
 from knitcore.yarn.solve.splines import RelaxedRepeat
-from knitcore.yarn.study.lowest import without_mirrors
 from scripts.training.charts import YARN_POINTS
 from studies.claims import nested
 from studies.knitdb import factor, measured_swatches
@@ -283,20 +279,11 @@ class Rest:
     rubbing: Rubbing
 
     @classmethod
-    def held(
-        cls, flat: RelaxedRepeat, candidate: Candidate, part: StitchChart | None = None
-    ) -> "Rest":
-        """A repeat that is held, in equilibrium under its holding forces as dead loads.
-
-        With ``part`` in a cell of that chart without symmetries, displaced by 0.01 radii.
-        """
+    def held(cls, flat: RelaxedRepeat, candidate: Candidate) -> "Rest":
+        """A repeat that is held, in equilibrium under its holding forces as dead loads."""
         cell, yarn, state = flat.cell, flat.yarn, flat.state
-        tension = flat.tension_n[: flat.loop_lengths_mm.size]
-        if part is not None:
-            cell = plain_cell(part, flat.cell.grid)
-            state = tiled_state(flat.cell, state, cell)
-            tension = np.resize(tension, cell.rows)
-        loops = np.resize(flat.loop_lengths_mm, cell.rows)
+        loops = flat.loop_lengths_mm
+        tension = flat.tension_n[: loops.size]
         none = np.zeros(cell.unknowns)
         energy = LoadedEnergy(cell, yarn, loops, flat.convention, load=none, begin=state)
         if candidate.bending is not None:
@@ -306,9 +293,6 @@ class Rest:
         slope = energy.derivatives(state, curve, pairs, start, tension, hessian=False)
         energy = replace(energy, load=-slope.gradient)
         rubbing = Rubbing(np.zeros(0, np.int64), np.zeros((0, 2)))
-        if part is not None:
-            shake = np.random.default_rng(1).uniform(-1.0, 1.0, cell.unknowns - 2)
-            state = state + np.append(0.01 * yarn.radius_mm * shake, (0.0, 0.0))
         return cls(energy, state, tension, candidate.friction, rubbing)
 
     @property
@@ -445,14 +429,12 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--part", choices=("sizes", "acrylic", "cells"))
+    parser.add_argument("--part", choices=("sizes", "acrylic"))
     arguments = parser.parse_args()
     if arguments.part in (None, "sizes"):
         _print_sizes(arguments.folder)
     if arguments.part in (None, "acrylic"):
         _print_acrylic()
-    if arguments.part in (None, "cells"):
-        _print_cells()
 
 
 def _print_sizes(folder: Path) -> None:
@@ -540,32 +522,6 @@ def _print_acrylic() -> None:
         print(f"{name:36}{factor(np.array(shown))} seed {stretch:.2f}", *map(_shown, shown))
 
 
-def _print_cells() -> None:
-    point = YARN_POINTS[0]
-    rows: dict[str, list[Array]] = {}
-    for text in REPEATS:
-        chart = StitchChart.parse(text)
-        loops = np.full(chart.rows, point.loop_length_mm)
-        laid = held_flat(chart, point.yarn, loops)
-        wide = held_flat(chart, point.yarn, loops, 1.1 * laid.cell_course_mm, 1.1)
-        mirrored = relax(chart, point.yarn, loops, branch=Branch.MIRRORED)
-        twice = chart.tile(*((2, 1) if chart.rows < chart.columns else (1, 2)))
-        free = [without_mirrors(mirrored, part=part).state for part in (chart, twice)]
-        sizes = [np.array([cell.cell_course_mm, cell.cell_wale_mm]) for cell in free]
-        rows.setdefault("lowest: twice the repeat", []).append(np.log(sizes[1] / sizes[0]))
-        for name in ("nothing", "friction between yarns"):
-            candidate = CANDIDATES[name]
-            once, other, start = (
-                Rest.held(held, candidate, part).release().size_mm
-                for held, part in ((laid, chart), (laid, twice), (wide, chart))
-            )
-            rows.setdefault(f"{name}: twice the repeat", []).append(np.log(other / once))
-            rows.setdefault(f"{name}: other start", []).append(np.log(start / once))
-        print(text, *(f"{name} {_shown(logs[-1])}" for name, logs in rows.items()), sep="; ")
-    for name, logs in rows.items():
-        print(f"{name:44} rms {factor(np.array(logs))}, most {np.exp(np.abs(logs).max()):.3f}")
-
-
 def _shown(logs: Array) -> str:
     return "×".join(f"{size:.2f}" for size in np.exp(logs))
 
@@ -575,11 +531,6 @@ STRESS = 0.1
 """N/mm, at which seed's stretch is compared."""
 ACRYLIC = {"solid fibres as a core": Candidate(FRICTION, solid=math.sqrt(0.5 / 1.18 / math.pi))}
 """A core as thick as 500 tex of acrylic fibres (as in the bending tests), of 1.18 g/cm³."""
-REPEATS = (
-    "KKKP", "K/K/K/P", "KKP", "K/K/P", "KKPP", "KP/KK", "KPP/PKK", "KK/PK",
-    "KKKKP", "K/K/K/K/P", "KKKPP", "KKP/KPK",
-)  # fmt: skip
-"""Repeats of three to six stitches."""
 
 
 if __name__ == "__main__":
