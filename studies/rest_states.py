@@ -17,7 +17,6 @@ It prints sizes over stockinette's, rms factors, what is chosen on the other fab
 
 import argparse
 import math
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -511,14 +510,11 @@ def _print_acrylic() -> None:
             laid = held_flat(chart, yarn, np.array([used.loop_length_mm]))
             needle = WIDE * laid.cell_course_mm
             machine = off_machine(chart, yarn, np.array([used.loop_length_mm]), needle)
-            rest = Rest.held(machine, candidate)
-            with suppress(ArithmeticError):
-                rest.release()
-                if fabric is Fabric.SEED:
-                    tested = free_strains_at_stress(record.law, Direction.COURSE, [STRESS])
-                    stretch = rest.pull(STRESS) / float(tested[0])
-            knitted = [record.stitch_course_mm, record.stitch_wale_mm]
-            shown.append(np.log(rest.size_mm / knitted))
+            rest = Rest.held(machine, candidate).release()
+            shown.append(np.log(rest.size_mm / [record.stitch_course_mm, record.stitch_wale_mm]))
+            if fabric is Fabric.SEED:  # last, as a pull changes the state
+                tested = free_strains_at_stress(record.law, Direction.COURSE, [STRESS])
+                stretch = rest.pull(STRESS) / float(tested[0])
         print(f"{name:36}{factor(np.array(shown))} seed {stretch:.2f}", *map(_shown, shown))
 
 
