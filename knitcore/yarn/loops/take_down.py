@@ -2,9 +2,10 @@
 
 The first shape has far more yarn than the cloth. As on a machine, the cloth hangs from its needles
 under a take-down while the yarn of every row is drawn in by small parts; steps that lock are taken
-back and made smaller, and where that does not help the cloth is pulled more gently. Every step of
-the yarn is certified, so the crossings stay those of the first shape. That may take a fine grid;
-tight yarn is smooth, so the usual one takes over as soon as it can.
+back and made smaller, and where that does not help the cloth is pulled more gently. Where a cable
+locks all the same, the row below it gets more yarn, as knitters loosen that row. Every step of the
+yarn is certified, so the crossings stay those of the first shape. That may take a fine grid; tight
+yarn is smooth, so the usual one takes over as soon as it can.
 """
 
 from __future__ import annotations
@@ -42,6 +43,8 @@ _STEP = 0.25
 """Longest part of the way, in logarithms of the length."""
 _LAST_STEP, _LEAST_STEP = 0.08, 0.015
 """Parts that are not halved towards the end, and the least that is tried after a lock."""
+_LOOSER, _LOOSEST = 1.1, 3.0
+"""Yarn of loops that cross, over what they had when they locked, and the most that is tried."""
 _OVERLONG = 0.02
 """Excess of a row's yarn, in loop lengths, with which the last stage still counts."""
 _STAGE = Options(tolerance=1e-2, slack=1e-2, iterations=5, leaves_saddles=False)
@@ -81,11 +84,14 @@ class TakeDown:
     ----------
     yarn, convention : of the energy.
     goal_mm : (rows,) mean loop length of each row in the cloth.
+    crossing_mm : (rows,) yarn of the loops that cross others, mm per site, which grows where it
+        locks; None where all keep their lengths.
     """
 
     yarn: YarnModel
     convention: Convention
     goal_mm: Array
+    crossing_mm: Array | None = None
     cancelled: Cancelled | None = None
 
     def __call__(self, drawn: DrawnYarn) -> tuple[StitchEnergy, Minimum]:
@@ -120,8 +126,8 @@ class TakeDown:
         )  # fmt: skip
 
     def _drawn_in(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum]:
-        begin = drawn.loop_lengths_mm
-        whole = float(np.log(begin / self.goal_mm).max())
+        begin, goal, looser = drawn.loop_lengths_mm, self.goal_mm, 1.0
+        whole = float(np.log(begin / goal).max())
         energy = self.energy(drawn.cell, begin, pull)
         last = self._stage(energy, drawn.state, None)
         done, most = 0.0, _STEP
@@ -129,7 +135,7 @@ class TakeDown:
             left = whole * (1.0 - done)
             step = min(left, most, max(0.5 * left, _LAST_STEP))
             part = 1.0 if step == left else done + step / whole
-            nearer = self.energy(energy.cell, begin ** (1.0 - part) * self.goal_mm**part, pull)
+            nearer = self.energy(energy.cell, begin ** (1.0 - part) * goal**part, pull)
             try:
                 minimum = self._stage(nearer, last.state, last.tension)
                 if part == 1.0:
@@ -137,7 +143,12 @@ class TakeDown:
             except (ConvergenceError, UnravelledError):
                 most = 0.5 * step
                 if most < _LEAST_STEP:
-                    raise
+                    looser *= _LOOSER
+                    if self.crossing_mm is None or pull > _PULLS_N_PER_MM[-1] or looser > _LOOSEST:
+                        raise
+                    begin, done, most = energy.loop_length_mm, 0.0, _LAST_STEP
+                    goal = self.goal_mm + (looser - 1.0) * self.crossing_mm
+                    whole = float(np.abs(np.log(begin / goal)).max())
                 continue
             energy, last = self._coarser(nearer, minimum, pull)
             done = part
