@@ -214,12 +214,12 @@ def yarn_of_acts(
     ----------
     yarn_over, tuck : of a loop that is laid over the needle.
     slip : of the float that passes a slipped stitch.
-    crossing : of a loop that changes places with others in a cable.
+    crossing : of a loop that changes places with others in a cable: one of the row below it.
     """
     sources = np.diff(graph.first, axis=1)
     passing = np.zeros(graph.act.shape, dtype=bool)
-    row, column = np.nonzero(sources)
-    passing[row, column] = graph.layer[graph.first[row, column]] != 0
+    above, crossed = np.repeat(np.arange(graph.rows), sources.sum(axis=1)), graph.layer != 0
+    passing[above[crossed] - 1, graph.source[crossed] % graph.columns] = True
     over = np.where(sources > 0, tuck, yarn_over)
     through = np.where(passing, crossing, 1.0)
     acts = [graph.act == act for act in (YarnAct.OVER, YarnAct.MISS)]

@@ -52,6 +52,10 @@ CAUTION = (
     "cells with lace, cables, slipped or tucked stitches miss measured cloth by a factor of 1.2 to "
     "1.35: take them as a picture of the yarn, not as a prediction."
 )
+LOOSENED = (
+    "The yarn of loops that cross locked, so the row below a crossing got more: {:.0%} of a knit's "
+    "for each such loop."
+)
 FOLDED = "The cloth folds in this shape, so it has no size."
 
 
@@ -185,7 +189,8 @@ def relax_stitches(
     loop_length_mm : yarn of a knit.
     history : what the cloth went through.
     friction : coefficient of friction between yarns; not used where it is agitated.
-    per_act : yarn of other stitches, relative to a knit's.
+    per_act : yarn of other stitches, relative to a knit's. By default loops that cross get more
+        where they would lock, and a note says how much.
     convention : factors of the energy.
     cancelled : called before every step; True stops with CancelledError.
 
@@ -210,8 +215,12 @@ def relax_stitches(
     graph = image.chart.graph
     drawn = knotted(room_for_yarn(graph, yarn, loop_length_mm))
     lengths = loop_length_mm * (per_act or YarnPerAct()).of_rows(graph)
-    take_down = TakeDown(yarn, Convention.parse(convention), lengths, cancelled)
+    crossing = loop_length_mm * _crossing(graph)
+    loosened = crossing if per_act is None and crossing.any() else None
+    take_down = TakeDown(yarn, Convention.parse(convention), lengths, loosened, cancelled)
     energy, minimum = take_down(drawn)
+    more = energy.loop_length_mm - lengths
+    lengths = energy.loop_length_mm
     energy, minimum, rubbing = _at_rest(
         energy, minimum.state, minimum.tension, kind, friction, cancelled
     )
@@ -223,6 +232,8 @@ def relax_stitches(
     open_places = holes(lines, cell.wales * course, cell.rows * wale, yarn.radius_mm)
     folded = is_folded(lines, cell.wales, course, wale)
     notes = (FOLDED, CAUTION) if folded else (CAUTION,)
+    if more.max() > 0.0:
+        notes = (LOOSENED.format(1.0 + more.sum() / crossing.sum()), *notes)
     seconds = time.process_time() - clock
     plain = relaxed_repeat(
         StitchChart(cell.purl), energy, Branch.FREE, minimum, seconds=seconds,
@@ -260,6 +271,12 @@ def knotted(drawn: DrawnYarn) -> DrawnYarn:
     lines = centre_lines(cell, state, cell.rows, cell.wales)
     code = clasp_code(lines, cell.wales * float(state[-2]), cell.rows * float(state[-1]))
     return replace(drawn, cell=replace(cell, code=tuple(code.tolist())))
+
+
+def _crossing(graph: StitchGraph) -> Array:
+    """(rows,) part of each row's loops that cross others."""
+    plain, twice = YarnPerAct(), YarnPerAct(crossing=2.0)
+    return twice.of_rows(graph) - plain.of_rows(graph)
 
 
 def yarn_overs(graph: StitchGraph) -> int:

@@ -24,7 +24,7 @@ class YarnPerAct:
     ----------
     yarn_over, tuck : of a loop that is laid over the needle.
     slip : of the float that passes a slipped stitch.
-    crossing : of a loop that changes places with others in a cable.
+    crossing : of a loop that changes places with others in a cable: one of the row below it.
     """
 
     yarn_over: float = 1.0

@@ -2,9 +2,10 @@
 
 The first shape has far more yarn than the cloth. As on a machine, the cloth hangs from its needles
 under a take-down while the yarn of every row is drawn in by small parts; steps that lock are taken
-back and made smaller, and where that does not help the cloth is pulled more gently. Every step of
-the yarn is certified, so the crossings stay those of the first shape. That may take a fine grid;
-tight yarn is smooth, so the usual one takes over as soon as it can.
+back and made smaller, and where that does not help the cloth is pulled more gently. Where a cable
+locks all the same, the row below it gets more yarn, as knitters loosen that row. Every step of the
+yarn is certified, so the crossings stay those of the first shape. That may take a fine grid; tight
+yarn is smooth, so the usual one takes over as soon as it can.
 """
 
 from __future__ import annotations
@@ -40,6 +41,8 @@ _ROOM = 1.1
 """Least distance of strands in the first shape, in diameters of the core."""
 _LAST_STEP, _LEAST_STEP = 0.08, 0.015
 """Parts that are not halved towards the end, and the least that is tried after a lock."""
+_LOOSER, _LOOSEST = 1.1, 3.0
+"""Yarn of loops that cross, over what they had when they locked, and the most that is tried."""
 _OVERLONG = 0.02
 """Excess of a row's yarn, in loop lengths, with which the last stage still counts."""
 _STAGE = Options(tolerance=1e-2, slack=1e-2, iterations=5, leaves_saddles=False)
@@ -79,6 +82,8 @@ class TakeDown:
     ----------
     yarn, convention : of the energy.
     goal_mm : (rows,) mean loop length of each row in the cloth.
+    crossing_mm : (rows,) yarn of the loops that cross others, mm per site, which grows where it
+        locks; None where all keep their lengths.
     cancelled : called before every step; True stops with CancelledError.
     longest : longest part of the way at a time, in logarithms of the length.
     """
@@ -86,6 +91,7 @@ class TakeDown:
     yarn: YarnModel
     convention: Convention
     goal_mm: Array
+    crossing_mm: Array | None = None
     cancelled: Cancelled | None = None
     longest: float = 0.25
 
@@ -121,15 +127,15 @@ class TakeDown:
         )  # fmt: skip
 
     def _drawn_in(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum]:
-        begin = drawn.loop_lengths_mm
-        whole = float(np.log(begin / self.goal_mm).max())
+        begin, goal, looser = drawn.loop_lengths_mm, self.goal_mm, 1.0
+        whole = float(np.log(begin / goal).max())
         energy, last, done = self.begun(drawn, pull)
         most = self.longest
         while done < 1.0:
             left = whole * (1.0 - done)
             step = min(left, most, max(0.5 * left, _LAST_STEP))
             part = 1.0 if step == left else done + step / whole
-            nearer = self.energy(energy.cell, self.lengths_mm(begin, part), pull)
+            nearer = self.energy(energy.cell, between(begin, goal, part), pull)
             try:
                 minimum = self.stage(nearer, last.state, last.tension)
                 if part == 1.0:
@@ -137,17 +143,18 @@ class TakeDown:
             except (ConvergenceError, UnravelledError):
                 most = 0.5 * step
                 if most < _LEAST_STEP:
-                    raise
+                    looser *= _LOOSER
+                    if self.crossing_mm is None or pull > _PULLS_N_PER_MM[-1] or looser > _LOOSEST:
+                        raise
+                    begin, done, most = energy.loop_length_mm, 0.0, _LAST_STEP
+                    goal = self.goal_mm + (looser - 1.0) * self.crossing_mm
+                    whole = float(np.abs(np.log(begin / goal)).max())
                 continue
             energy, last = self._coarser(nearer, minimum, pull)
             done = part
             self.reached(energy, last, done)
             most = min(1.3 * most, self.longest)
         return energy, last
-
-    def lengths_mm(self, begin_mm: Array, part: float) -> Array:
-        """(rows,) loop lengths where a part of the way is done."""
-        return np.asarray(begin_mm ** (1.0 - part) * self.goal_mm**part)
 
     def begun(self, drawn: DrawnYarn, pull: float) -> tuple[StitchEnergy, Minimum, float]:
         """The first shape under its pull, and the part of the way that is done."""
@@ -184,6 +191,11 @@ class TakeDown:
         if minimum.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
             raise ConvergenceError("cores overlap")
         return minimum
+
+
+def between(begin_mm: Array, goal_mm: Array, part: float) -> Array:
+    """(rows,) loop lengths where a part of the way is done."""
+    return np.asarray(begin_mm ** (1.0 - part) * goal_mm**part)
 
 
 def _compared(cell: YarnCell, state: Array) -> Array:

@@ -28,7 +28,7 @@ from knitcore.yarn.loops.drawn_yarn import DrawnYarn
 from knitcore.yarn.loops.holes import holes, is_folded
 from knitcore.yarn.loops.relaxed_stitches import BLOCKING_N_PER_MM, FOLDED, knotted, yarn_overs
 from knitcore.yarn.loops.stitch_energy import SpreadEnergy, StitchEnergy, YarnPerAct
-from knitcore.yarn.loops.take_down import GRID, TakeDown, room_for_yarn
+from knitcore.yarn.loops.take_down import GRID, TakeDown, between, room_for_yarn
 from knitcore.yarn.model.conventions import Convention
 from knitcore.yarn.model.energy import SPACING_PER_BENDING, CellEnergy
 from knitcore.yarn.model.input_checks import check_loop
@@ -279,9 +279,9 @@ class _Work(Rounds):
 
     def _drawn_in(self, resume: WholeShape | None) -> WholeShape:
         take_down = _TakeDown(
-            self.yarn, self.convention, self.goal_mm, self.cancelled, work=self,
+            self.yarn, self.convention, self.goal_mm, cancelled=self.cancelled, work=self,
             resume=None if resume is None else self._checked(resume),
-            **({} if self.drawn.cell.stitches <= _FEW else {"longest": _LONGEST}),
+            longest=TakeDown.longest if self.drawn.cell.stitches <= _FEW else _LONGEST,
         )  # fmt: skip
         energy, minimum = take_down(self.drawn)
         return self.shape(energy, minimum, 1.0)
@@ -300,7 +300,7 @@ class _TakeDown(TakeDown):
             return super().begun(drawn, pull)
         sheet, cell = self.resume, drawn.cell
         grid = SplineGrid(sheet.controls.shape[1] // cell.wales, GRID.per_span)
-        lengths = self.lengths_mm(drawn.loop_lengths_mm, sheet.drawn_in)
+        lengths = between(drawn.loop_lengths_mm, self.goal_mm, sheet.drawn_in)
         energy = self.energy(replace(cell, grid=grid), lengths, pull)
         return energy, self.work.minimum(energy, sheet)[0], sheet.drawn_in
 

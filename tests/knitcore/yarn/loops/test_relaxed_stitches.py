@@ -86,6 +86,16 @@ def test_cables_and_wide_lace_come_to_rest(text: str) -> None:
     assert at_rest(text, StitchHistory.BLOCKED).converged
 
 
+@pytest.mark.slow
+def test_the_row_below_a_crossing_that_locks_gets_more_yarn() -> None:
+    rest = at_rest("[3/3R];KKKKKK", StitchHistory.BLOCKED)
+    below, crossed = rest.loop_lengths_mm / LOOP_MM
+    assert 1.0 < below < 1.5
+    assert crossed == pytest.approx(1.0)
+    assert f"{below:.0%}" in rest.notes[0]
+    assert cell_is_knitted(rest.state.cell.cell, rest.state.cell.state)
+
+
 def test_two_repeats_rest_like_one() -> None:
     chart = SymbolChart.parse("VK;KK")
     once, twice = (relax_stitches(of, ACRYLIC, LOOP_MM) for of in (chart, chart.tile(4, 8)))

@@ -17,7 +17,8 @@ from tests.knitcore.yarn.random_charts import ACRYLIC
         ("VK;KK", (1.0, 0.635)),
         ("TK;KK", (1.0, 0.875)),
         ("O/;KK", (1.0, 1.1)),
-        ("[1/1R]KK;KKKK", (1.0, 1.25)),
+        ("[1/1R]KK;KKKK", (1.25, 1.0)),
+        ("KKKK;[1/1R]KK", (1.0, 1.25)),
     ],
 )
 def test_rows_take_the_yarn_of_their_acts(text: str, means: tuple[float, float]) -> None:
