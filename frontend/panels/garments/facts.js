@@ -90,7 +90,7 @@ function regions({ regions: all }, unit) {
         const swatch = h("span", { class: "planner-swatch" });
         swatch.style.background = region.colour;
         return tableRow(
-          h("span", {}, swatch, region.name),
+          h("span", { class: "line" }, swatch, region.name),
           `${region.columns} × ${region.rows}`,
           `${long(region.width_mm, unit, "")} × ${long(region.height_mm, unit)}`,
           `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`,
