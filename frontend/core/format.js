@@ -7,7 +7,7 @@ export const thousands = (number) => number.toLocaleString("en", { maximumFracti
 export function figure(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
-  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  const magnitude = Math.floor(Math.log10(Math.abs(Number(value.toPrecision(digits)))));
   const decimals = Math.min(6, Math.max(0, digits - 1 - magnitude));
   return (Math.abs(value) < 999.5 ? value.toFixed(decimals) : thousands(Math.round(value))).replace("-", "−");
 }

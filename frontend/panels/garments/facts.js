@@ -69,8 +69,8 @@ function sizes({ sizes: all, regions: parts }) {
   ];
 }
 
-/** @param {number} mm @param {string} unit @param {string} named after the number */
-const long = (mm, unit, named = ` ${unit}`) => (unit === "in" ? (mm / 25.4).toFixed(1) : mm.toFixed(0)) + named;
+/** @param {number} mm @param {string} unit */
+const long = (mm, unit) => (unit === "in" ? (mm / 25.4).toFixed(1) : mm.toFixed(0));
 
 /** @param {GarmentResult} garment @param {string} unit */
 function regions({ regions: all }, unit) {
@@ -79,7 +79,7 @@ function regions({ regions: all }, unit) {
     [
       "Region",
       "Stitches × rows",
-      "By itself, at rest",
+      `By itself, at rest, ${unit}`,
       "Yarn",
       h("span", { title: PULL }, `${STRETCH}, rows × columns`),
     ],
@@ -92,7 +92,7 @@ function regions({ regions: all }, unit) {
         return tableRow(
           h("span", { class: "line" }, swatch, region.name),
           `${region.columns} × ${region.rows}`,
-          `${long(region.width_mm, unit, "")} × ${long(region.height_mm, unit)}`,
+          `${long(region.width_mm, unit)} × ${long(region.height_mm, unit)}`,
           `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`,
           `${percent(region.hand.course.strain)} × ${percent(region.hand.wale.strain)}`,
         );
@@ -109,16 +109,16 @@ function pressure({ worn }, unit) {
   return [
     table(
       { class: "planner-table figures full-width small", id: "planner-pressure" },
-      ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],
+      ["Where it is worn", `Garment, ${unit}`, `Limb, ${unit}`, "Ease", "Pressure"],
       h(
         "tbody",
         {},
         ...worn.map((place) =>
           tableRow(
-            `${place.part}, ${long(place.at_mm, unit)}`,
+            `${place.part}, ${long(place.at_mm, unit)} ${unit}`,
             long(place.rest_mm, unit),
             long(place.worn_mm, unit),
-            percent(place.ease),
+            h("span", { class: "nowrap" }, percent(place.ease)),
             place.mmhg && place.kpa
               ? h(
                   "span",

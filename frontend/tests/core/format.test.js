@@ -7,6 +7,7 @@ test("three figures, with the zeros that count", () => {
   assert.equal(figure(0.223147), "0.223");
   assert.equal(figure(0.056), "0.0560");
   assert.equal(figure(16.12), "16.1");
+  assert.equal(figure(0.09998), "0.100");
   assert.equal(figure(1234.5), "1,235");
   assert.equal(figure(999.9), "1,000");
   assert.equal(figure(-0.5), "−0.500");
