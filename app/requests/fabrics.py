@@ -1,10 +1,11 @@
 """Fabrics in requests and results: a chart of a material, its laws and its gauge."""
 
 from dataclasses import replace
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from knitcore.chart.fabric import Fabric
 from knitcore.chart.stitch_chart import StitchChart
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -12,7 +13,7 @@ from knitcore.materials import Laws, Material, load_library
 from knitcore.prediction.size import KnownBy, RelaxedSize
 
 from ..context import Context
-from .base import UNIT, RequestModel, ResultModel
+from .base import UNIT, Ends, RequestModel, ResultModel
 from .charts import AnyChartInput, ChartInput, MaterialName, to_chart, to_stitches
 
 
@@ -140,6 +141,25 @@ class Extensibility(ResultModel):
 
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
+
+
+class HandStretchResult(ResultModel):
+    """Stretch along one direction at one pull."""
+
+    strain: float = Field(description="From the size at rest, the other direction free.")
+    strain_interval: Ends
+    word: Literal["firm", "slightly stretchy", "stretchy", "very stretchy"]
+    more_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch less.")
+    less_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch more.")
+
+
+class HandPullResult(ResultModel):
+    """Stretch at one pull of a hand."""
+
+    pull: Literal["light", "hand", "firm"]
+    n_per_mm: float = Field(description="Force per width of cloth: 0.1 N/mm is 10 N on 10 cm.")
+    course: HandStretchResult
+    wale: HandStretchResult
 
 
 class LawConstants(ResultModel):

@@ -4,6 +4,7 @@
  * @import {Studio} from "../state/studio.js"
  */
 
+import { thousands } from "../core/format.js";
 import { byHand, withKey } from "../core/pointing.js";
 import { actionsOf } from "./action.js";
 import { Clip, Floating } from "../design/floating.js";
@@ -42,7 +43,7 @@ function selectedMotif(studio) {
   if (!box) return null;
   const part = studio.document.grid.region(box);
   if (motifText(part).length > MAX_MOTIF) {
-    studio.tell(`A pattern has at most ${MAX_MOTIF.toLocaleString("en")} stitches; select fewer.`);
+    studio.tell(`A pattern has at most ${thousands(MAX_MOTIF)} stitches; select fewer.`);
     return null;
   }
   return part;

@@ -22,19 +22,3 @@ export function difference(a, b) {
   const text = factor >= 2 ? `× ${factor.toFixed(1)}` : `${share > 0 ? "+" : ""}${percent(share)}`;
   return { text, clear: Boolean(apart), meet: known && !apart };
 }
-
-/**
- * A value between the points of a curve.
- *
- * @param {readonly number[]} x increasing
- * @param {readonly number[]} y
- * @param {number} at
- * @returns {number | undefined} undefined beyond the curve's end
- */
-export function interpolated(x, y, at) {
-  const after = x.findIndex((value) => value >= at);
-  if (after < 0) return undefined;
-  if (after === 0) return y[0];
-  const share = (at - x[after - 1]) / (x[after] - x[after - 1]);
-  return y[after - 1] + share * (y[after] - y[after - 1]);
-}

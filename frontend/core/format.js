@@ -1,12 +1,15 @@
 /** Numbers for people: three significant figures, a unit beside each. */
 
+/** How many, or how much to a tenth: 8,866 stitches. @param {number} number */
+export const thousands = (number) => number.toLocaleString("en", { maximumFractionDigits: 1 });
+
 /** @param {number | null | undefined} value @param {number} [digits] significant figures */
 export function figure(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
-  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  const magnitude = Math.floor(Math.log10(Math.abs(Number(value.toPrecision(digits)))));
   const decimals = Math.min(6, Math.max(0, digits - 1 - magnitude));
-  return value.toFixed(decimals).replace("-", "−");
+  return (Math.abs(value) < 999.5 ? value.toFixed(decimals) : thousands(Math.round(value))).replace("-", "−");
 }
 
 /** Between the ends of an interval: a dash beside a minus would be a second one. @param {readonly (number | undefined)[]} ends */

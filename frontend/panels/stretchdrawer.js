@@ -8,7 +8,7 @@
 
 import { withKey } from "../core/pointing.js";
 import { along } from "../core/directions.js";
-import { figure, percent, percentRange, spread } from "../core/format.js";
+import { figure, percent, percentRange, spread, thousands } from "../core/format.js";
 import { lockUpInWords } from "../core/striptest.js";
 import { h } from "../elements/dom.js";
 import { REST } from "../state/studio.js";
@@ -65,7 +65,7 @@ export function stretchdrawer(host, studio, stretcher) {
       studio.tellProblem({
         type: "input",
         status: 422,
-        title: toForce ? `Enter a force of up to ${most.toLocaleString("en")} N` : `Enter a stretch of up to ${most} %`,
+        title: toForce ? `Enter a force of up to ${thousands(most)} N` : `Enter a stretch of up to ${most} %`,
         detail: "",
         remedy: `For example ${DEFAULTS[toForce ? "N" : "%"]}.`,
       });

@@ -19,6 +19,7 @@
  * @property {string} note how the grid represents stitches that do not form a rectangle; "" if they do
  */
 
+import { thousands } from "../core/format.js";
 import { largestRectangle } from "../grid/inscribed.js";
 import { selectionOf } from "../design/selection.js";
 import { outlineText } from "../design/snapshot.js";
@@ -142,7 +143,7 @@ function partOf(box, chart, kind, title) {
   };
   const stitches = mask.reduce((sum, bit) => sum + bit, 0);
   const note = `Moduli of the largest rectangle inside it, ${part.columns} × ${part.rows} stitches.`;
-  return { ...common, size: `${stitches} stitches`, grid: part, box: place, note };
+  return { ...common, size: `${thousands(stitches)} stitches`, grid: part, box: place, note };
 }
 
 /**

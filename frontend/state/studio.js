@@ -18,6 +18,7 @@
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
+import { thousands } from "../core/format.js";
 import { paced } from "../core/paced.js";
 import { atStitches } from "../core/striptest.js";
 import { Grid } from "../grid/grid.js";
@@ -272,7 +273,7 @@ export class Studio {
     if (rows * columns <= most) return "";
     const side = Math.floor(Math.sqrt(most));
     return (
-      `This chart is too large for ${what}, which takes up to ${most.toLocaleString("en")} stitches, ` +
+      `This chart is too large for ${what}, which takes up to ${thousands(most)} stitches, ` +
       `such as ${side} × ${side}. Try a part of it as a design of its own.`
     );
   }

@@ -15,6 +15,7 @@ from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
 from knitcore.materials.law_uncertainty import log_interval
 from knitcore.materials.yarn_per_stitch import MeasuredYarn, yarn_per_stitch
+from knitcore.prediction.hand import HandPull, hand_pulls
 from knitcore.prediction.neighbourhood import counted_over_computed
 from knitcore.prediction.predict import predict
 from knitcore.prediction.size import RelaxedSize
@@ -63,7 +64,7 @@ class RegionMisfit:
 
 @dataclass(frozen=True)
 class RegionNumbers:
-    """Extensibility and moduli of the fabric of a region."""
+    """Extensibility and moduli of the fabric of a region, and its stretch at a hand's pull."""
 
     name: str
     stitches: int
@@ -71,6 +72,7 @@ class RegionNumbers:
     extensibility_wale_mm_per_n: float
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float
+    hand: HandPull
 
 
 def fill_regions(stitch: Mask, regions: Sequence[Region]) -> ShapedChart:
@@ -142,7 +144,7 @@ def misfits(
 def region_numbers(
     shaped: ShapedChart, regions: Sequence[Region], material: Material
 ) -> tuple[RegionNumbers, ...]:
-    """Initial extensibility of the fabrics that fill the regions, and its inverse.
+    """Numbers of the fabrics that fill the regions.
 
     Raises
     ------
@@ -156,9 +158,9 @@ def region_numbers(
             continue
         predicted = predict(region.fill, material)
         course, wale = predicted.modulus_course_n_per_mm, predicted.modulus_wale_n_per_mm
-        numbers.append(
-            RegionNumbers(region.name, int(cells.sum()), 1 / course, 1 / wale, course, wale)
-        )
+        (hand,) = hand_pulls(material, predicted, ["hand"])
+        count = int(cells.sum())
+        numbers.append(RegionNumbers(region.name, count, 1 / course, 1 / wale, course, wale, hand))
     return tuple(numbers)
 
 

@@ -1,5 +1,6 @@
 """Stretch of a chart at the pull of a hand, with a word and its place among the yarn's fabrics."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -57,17 +58,23 @@ class HandPull:
     wale: HandStretch
 
 
-def hand_pulls(material: Material, prediction: Prediction) -> tuple[HandPull, ...]:
-    """Tell how far a chart of a material stretches at a light, a usual and a firm pull."""
-    along = {d: _stretches(prediction.along(d), material, d) for d in Direction}
+def hand_pulls(
+    material: Material, prediction: Prediction, pulls: Iterable[str] = tuple(PULLS_N_PER_MM)
+) -> tuple[HandPull, ...]:
+    """Tell how far a chart of a material stretches at pulls of :data:`PULLS_N_PER_MM`."""
+    forces = {pull: PULLS_N_PER_MM[pull] for pull in pulls}
+    along = {
+        d: _stretches(prediction.along(d), material, d, tuple(forces.values())) for d in Direction
+    }
     return tuple(
         HandPull(pull, force, along[Direction.COURSE][k], along[Direction.WALE][k])
-        for k, (pull, force) in enumerate(PULLS_N_PER_MM.items())
+        for k, (pull, force) in enumerate(forces.items())
     )
 
 
-def _stretches(along: Along, material: Material, direction: Direction) -> list[HandStretch]:
-    forces = tuple(PULLS_N_PER_MM.values())
+def _stretches(
+    along: Along, material: Material, direction: Direction, forces: tuple[float, ...]
+) -> list[HandStretch]:
     strains = along.strain(forces).tolist()
     low, high = (ends.tolist() for ends in along.strain_interval(forces))
     pure = {

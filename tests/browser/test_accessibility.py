@@ -189,6 +189,7 @@ def test_everything_is_still_and_in_reach_on_small_screens(flat_studio: Page) ->
         }).map(({ id, className }) => `${id}.${className}`)"""
     )
     assert moving == []
+    page.fill(".design-name", "Therapeutic glove for the right hand, to be tried in three yarns")
     sizes = [(1280, 720), (1024, 768), (820, 1180), (720, 450), (640, 400), (390, 844)]
     for width, height in sizes:
         page.set_viewport_size({"width": width, "height": height})
@@ -198,6 +199,7 @@ def test_everything_is_still_and_in_reach_on_small_screens(flat_studio: Page) ->
             box = page.locator(part).bounding_box()
             assert box, f"{part} is not shown at {width}"
             assert box["x"] >= 0
+            assert box["x"] + box["width"] <= width, f"{part} is cut off at {width}"
             assert box["x"] + box["width"] <= width + 0.5, f"{part} is cut off at {width}"
         chart = page.locator("#chart").bounding_box()
         assert chart

@@ -341,7 +341,9 @@ def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> N
     with sent_view(flat_studio, '"colour":"pressure"') as shown:
         flat_studio.click("#limb-wear")
     assert shown.value.ok, shown.value.text()
-    expect(flat_studio.locator(".fabric-caption")).to_contain_text("Pressure on the body")
+    caption = flat_studio.locator(".fabric-caption")
+    expect(caption).to_contain_text("Pressure on the body")
+    expect(caption.locator("[role=alert] summary")).to_contain_text("It may press by more")
     expect(flat_studio.locator(".pressure-plot")).to_be_attached()
 
 

@@ -1,6 +1,6 @@
 """The mechanics of a chart."""
 
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field
 
@@ -23,7 +23,7 @@ from knitcore.prediction.swept import worth_relaxing
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
 from ...requests.charts import OutlineInput
-from ...requests.fabrics import ElasticConstants, Extensibility, StitchesRequest
+from ...requests.fabrics import ElasticConstants, Extensibility, HandPullResult, StitchesRequest
 from ..registry import Command, Operation
 
 
@@ -36,25 +36,6 @@ class PredictRequest(StitchesRequest):
     hand: bool = Field(
         False, description="Also tell how far the chart stretches at three pulls of a hand."
     )
-
-
-class HandStretchResult(ResultModel):
-    """Stretch along one direction at one pull."""
-
-    strain: float = Field(description="From the size at rest, the other direction free.")
-    strain_interval: Ends
-    word: Literal["firm", "slightly stretchy", "stretchy", "very stretchy"]
-    more_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch less.")
-    less_than: list[Fabric] = Field(description="Pure fabrics of this yarn that stretch more.")
-
-
-class HandPullResult(ResultModel):
-    """Stretch at one pull of a hand."""
-
-    pull: Literal["light", "hand", "firm"]
-    n_per_mm: float = Field(description="Force per width of cloth: 0.1 N/mm is 10 N on 10 cm.")
-    course: HandStretchResult
-    wale: HandStretchResult
 
 
 class NarrowingResult(ResultModel):

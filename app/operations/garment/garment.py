@@ -25,7 +25,7 @@ from ...cli.options import out_option
 from ...context import Context
 from ...requests.base import Ends, IntervalResult, ResultModel
 from ...requests.charts import CellLines, ChartLines, RepeatText
-from ...requests.fabrics import Extensibility, Moduli, YarnPerStitch
+from ...requests.fabrics import Extensibility, HandPullResult, Moduli, YarnPerStitch
 from ...requests.garments import LENGTHS, AnyTemplate, KnitterRequest
 from ...requests.sizes import SizeResult, SizeSteps, size_lines, sizes_of
 from ..registry import Command, Operation
@@ -67,7 +67,7 @@ class GarmentRequest(KnitterRequest):
 
 
 class RegionResult(Moduli, Extensibility):
-    """One region: its repeat, colour and size, and the initial moduli of its fabric."""
+    """One region: its repeat, colour and size, and the numbers of its fabric."""
 
     name: str
     fill: RepeatText
@@ -83,6 +83,7 @@ class RegionResult(Moduli, Extensibility):
         description="90 % interval of the width, from that of the gauge."
     )
     height_interval_mm: Ends
+    hand: HandPullResult = Field(description="Stretch of its fabric at the pull of a hand.")
     yarn_m: float
     yarn_g: float | None
     cells: CellLines
@@ -300,11 +301,11 @@ def _lines(r: GarmentResult) -> list[str]:
         f"{r.name}: {size_in_words(r.columns, r.rows)}, {r.stitches} stitches, "
         f"{r.yarn_m:.0f} m of yarn ({r.yarn_interval_m[0]:.0f} to {r.yarn_interval_m[1]:.0f}); "
         f"{r.closing}",
-        f"{'region':20} {'stitches':>8} {'course':>8} {'wale':>8}  mm/N",
+        f"{'region':20} {'stitches':>8} {'course':>8} {'wale':>8}  stretch at a hand's pull",
     ]
     lines += [
-        f"{region.name:20} {region.stitches:8} {region.extensibility_course_mm_per_n:8.2f} "
-        f"{region.extensibility_wale_mm_per_n:8.2f}"
+        f"{region.name:20} {region.stitches:8} {region.hand.course.strain:8.0%} "
+        f"{region.hand.wale.strain:8.0%}"
         for region in r.regions
     ]
     lines += [_pressure(place) for place in r.worn]

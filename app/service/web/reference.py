@@ -18,11 +18,25 @@ from .packed import tagged
 from .schema import FIRST_PROBLEM
 
 STYLE = """
-:root { color-scheme: light dark; }
-:root { --line: light-dark(#d8d3cb, #46423c); --soft: light-dark(#f4f1ec, #26241f); }
+:root {
+  color-scheme: light dark;
+  --page: light-dark(#ece7df, #171513);
+  --panel: light-dark(#faf8f4, #24211e);
+  --raised: light-dark(#ffffff, #302c28);
+  --line: light-dark(#ddd5c9, #3b3631);
+  --line-strong: light-dark(#8d8276, #857b70);
+  --text: light-dark(#2a2521, #efe9e1);
+  --muted: light-dark(#665d53, #ada297);
+  --accent: light-dark(#a8321f, #f0765f);
+  --accent-hover: light-dark(#8f2817, #f68f7b);
+  --on-accent: light-dark(#ffffff, #25100b);
+  --danger: light-dark(#9c2413, #ff9783);
+}
+html { background: var(--panel); color: var(--text); }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem; }
+a { color: var(--accent); }
 code, pre { font: 14px/1.45 ui-monospace, monospace; overflow-wrap: anywhere; }
-pre { background: var(--soft); padding: .7rem; overflow: auto; white-space: pre-wrap; }
+pre { background: var(--raised); padding: .7rem; overflow: auto; white-space: pre-wrap; }
 details { border-top: 1px solid var(--line); padding: .4rem 0; }
 summary { cursor: pointer; }
 summary b { display: inline-block; min-width: 4.5rem; }
@@ -33,20 +47,23 @@ nav a { margin-right: 1rem; }
 """
 
 
-def page(title: str, content: str) -> str:
-    """A page without scripts and other hosts.
+def page(title: str, content: str, style: str = "", mark: str = "") -> str:
+    """A page without scripts and other hosts, in the colours of the studio.
 
     Parameters
     ----------
     title : as text.
     content : as HTML.
+    style : more rules of CSS.
+    mark : HTML above the title.
     """
     return f"""<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(title)}</title>
-<style>{STYLE}</style>
+<style>{STYLE}{style}</style>
+{mark}
 <h1>{escape(title)}</h1>
 {content}
 </html>

@@ -4,6 +4,7 @@
  * @import {ActionContext} from "../../actions/action.js"
  */
 
+import { thousands } from "../../core/format.js";
 import { action } from "../../actions/registry.js";
 import { selectedCells } from "../../design/selection.js";
 import { h } from "../../elements/dom.js";
@@ -46,7 +47,7 @@ export function selectionbar(host, context) {
     const wide = selection.column1 - selection.column0;
     const high = selection.row1 - selection.row0;
     count.textContent = selection.mask
-      ? `${selectedCells(selection, studio.document.grid).length} sts`
+      ? `${thousands(selectedCells(selection, studio.document.grid).length)} sts`
       : `${wide} × ${high}`;
   });
 }

@@ -10,9 +10,10 @@
  */
 
 import { ApiError } from "../../api.js";
-import { difference, interpolated } from "../../core/difference.js";
+import { difference } from "../../core/difference.js";
 import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, range } from "../../core/format.js";
+import { STRETCH } from "../../core/hand.js";
 import { Latest } from "../../services/latest.js";
 import { h, remark } from "../../elements/dom.js";
 import { drawPair } from "../../plots/pair.js";
@@ -31,8 +32,6 @@ const SIDES = /** @type {const} */ ([
 /** Longest side of the larger picture. */
 const PICTURE_PX = 190;
 const RECTANGLES_PX = 150;
-/** The load at which stretches are compared: a hand's pull. */
-const LOAD_N_PER_MM = 0.1;
 
 /** @param {Studio} studio @param {ActionContext} context */
 export function create(studio, { keeper }) {
@@ -228,27 +227,25 @@ function yarns(select, studio, chosen) {
  * @param {Answers} answers
  * @returns {[label: string, unit: string, answer: Answer][]}
  */
-const numbersOf = ({ predicted, curves }) =>
+const numbersOf = ({ predicted }) =>
   DIRECTIONS.flatMap((way) => {
-    const { strain, strain_interval, stress_n_per_mm } = curves[way];
-    const at = (/** @type {number[]} */ strains) =>
-      100 * (interpolated(stress_n_per_mm, strains, LOAD_N_PER_MM) ?? NaN);
     const poisson = way === "course" ? "poisson_yx" : "poisson_xy";
     const lines = LINES[way];
+    const pulled = predicted.hand.find(({ pull }) => pull === "hand")?.[way];
+    const [low, high] = pulled?.strain_interval ?? [NaN, NaN];
     const modulus = predicted[`modulus_${way}_n_per_mm`];
-    const stretches = strain_interval.map(at);
     return [
-      [`Stiffness, ${lines}`, "N/mm", { value: modulus, interval: predicted[`modulus_${way}_interval_n_per_mm`] }],
       [
-        `Stretch at ${LOAD_N_PER_MM} N/mm, ${lines}`,
+        `${STRETCH}, ${lines}`,
         "%",
-        { value: at(strain), interval: [stretches[0], stretches[1]] },
+        { value: pulled && 100 * pulled.strain, interval: pulled && [100 * low, 100 * high] },
       ],
       [
         way === "course" ? "Width of a stitch" : "Height of a stitch",
         "mm",
         { value: predicted[`relaxed_${way}_mm`], interval: predicted[`relaxed_${way}_interval_mm`] },
       ],
+      [`Stiffness, ${lines}`, "N/mm", { value: modulus, interval: predicted[`modulus_${way}_interval_n_per_mm`] }],
       [`Poisson ratio, ${lines}`, "", { value: predicted[poisson], interval: predicted[`${poisson}_interval`] }],
     ];
   });

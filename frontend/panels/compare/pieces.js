@@ -97,7 +97,7 @@ export async function answers({ scope: { shaped }, stitches }, material, gauges,
   const cloth = { chart: stitches, material };
   const body = { ...cloth, gauge: gauges.of(cloth) };
   const [predicted, course, wale] = await Promise.all([
-    api.run("predict", { ...body, ...shaped }, signal),
+    api.run("predict", { ...body, ...shaped, hand: true }, signal),
     api.run("curve", { ...body, direction: "course" }, signal),
     api.run("curve", { ...body, direction: "wale" }, signal),
   ]);

@@ -8,6 +8,7 @@
 
 import { api } from "../../api.js";
 import { ago } from "../../core/ago.js";
+import { thousands } from "../../core/format.js";
 import { h } from "../../elements/dom.js";
 import { nameOf } from "../../services/account.js";
 import { dialog } from "../../widgets/dialog.js";
@@ -16,25 +17,23 @@ import { textButton } from "../../widgets/buttons.js";
 import { table, tableRow } from "../../widgets/table.js";
 import { attempt } from "../../widgets/problem.js";
 
-/** @param {number} n */
-const count = (n) => n.toLocaleString("en");
 /** @param {number} unit @returns {(n: number) => string} */
-const decimal = (unit) => (n) => (n / unit).toFixed(1);
+const decimal = (unit) => (n) => thousands(n / unit);
 /** Limits that are shown, in words, and how their numbers are written. */
 const LIMITS = /** @type {const} */ ([
-  ["designs", "Designs, with those deleted in the last 30 days", count],
+  ["designs", "Designs, with those deleted in the last 30 days", thousands],
   ["kept_bytes", "Designs and their versions, MB", decimal(1e6)],
-  ["versions", "Versions of one design, at most", count],
-  ["links", "Links to one design, at most", count],
-  ["materials", "Own yarns", count],
+  ["versions", "Versions of one design, at most", thousands],
+  ["links", "Links to one design, at most", thousands],
+  ["materials", "Own yarns", thousands],
   ["job_bytes", "Requests of jobs, MB", decimal(1e6)],
   ["cpu_s", "Computing time per day, hours", decimal(3600)],
   ["memory_bytes", "Memory of running computations, GB", decimal(1e9)],
-  ["jobs", "Jobs that wait", count],
-  ["views", "3D views", count],
-  ["view_stitches", "Stitches in 3D views", count],
-  ["streams", "Jobs and views that are followed", count],
-  ["connections", "Requests at once, with this one", count],
+  ["jobs", "Jobs that wait", thousands],
+  ["views", "3D views", thousands],
+  ["view_stitches", "Stitches in 3D views", thousands],
+  ["streams", "Jobs and views that are followed", thousands],
+  ["connections", "Requests at once, with this one", thousands],
 ]);
 
 /** @param {Studio} _studio @param {ActionContext} context */

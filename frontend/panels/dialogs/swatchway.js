@@ -166,7 +166,7 @@ export function swatchWay(studio, made) {
     });
     knownPlace.replaceChildren(
       remark(
-        "90 % intervals after each measurement. What it brought is in bold; stretch is under 0.1 N/mm, as when a garment is pulled on.",
+        "90 % intervals after each measurement. What it brought is in bold; stretch is that at a hand's pull, 10 N on 10 cm of cloth.",
       ),
       h(
         "div",

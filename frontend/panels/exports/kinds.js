@@ -7,6 +7,8 @@
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
+import { thousands } from "../../core/format.js";
+
 /** Whether a picture of the cloth goes into a file. @param {string} to */
 export const isPattern = (to) => to.startsWith("pattern");
 
@@ -20,7 +22,7 @@ export const isPattern = (to) => to.startsWith("pattern");
 export function hindrance(to, { shaped, stitches }, largest) {
   if (shaped && ["knitspeak", "text"].includes(to)) return "holds no outline: rectangular charts only";
   const most = largest[to] ?? Infinity;
-  return stitches > most ? `at most ${most.toLocaleString("en")} stitches` : "";
+  return stitches > most ? `at most ${thousands(most)} stitches` : "";
 }
 
 /** The formats that extensions add. @param {Extensions["extensions"]} extensions @returns {ExportKind[]} */

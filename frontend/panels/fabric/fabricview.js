@@ -289,7 +289,7 @@ export function fabricview(host, studio, view) {
     host.toggleAttribute("data-left", left);
     const { pressure } = (!stale && studio.seeing.posed.value) || {};
     caption.replaceChildren(
-      pressure?.warning ? h("strong", { class: "problem-text", role: "alert" }, pressure.warning) : "",
+      pressure?.warning ? tooTight(pressure.warning) : "",
       confirmedColours
         ? h("div", { class: "fabric-legend line small", id: "fabric-legend" }, ...legendOf(confirmedColours))
         : "",
@@ -424,4 +424,11 @@ function poseText(studio) {
   if (posed.value) return wordsOf(posed.value);
   if (value === "flat") return "Relaxed, pinned flat";
   return `${POSES[value]}: being computed`;
+}
+
+/** That a garment presses too much; why that matters is folded, so that the cloth keeps its room. @param {string} warning */
+function tooTight(warning) {
+  const [much, ...why] = warning.split(/(?<=\.) /);
+  const folded = h("details", {}, h("summary", {}, h("strong", {}, much)), why.join(" "));
+  return h("div", { class: "problem-text", role: "alert" }, folded);
 }

@@ -4,7 +4,8 @@
  * @import {GarmentResult} from "../../types.js"
  */
 
-import { figure, percent } from "../../core/format.js";
+import { figure, percent, thousands } from "../../core/format.js";
+import { PULL, STRETCH } from "../../core/hand.js";
 import { h, remark } from "../../elements/dom.js";
 import { icon } from "../../elements/icons.js";
 import { isWarning } from "../../services/poser.js";
@@ -20,7 +21,7 @@ export function facts(garment, unit) {
       "p",
       { class: "figures", title: `90 % intervals: ${garment.interval_source}` },
       h("strong", {}, `${columns} sts × ${rows} rows`),
-      ` · ${stitches} stitches · ${figure(yarn_m)} m (${span(yarn_interval_m)}) of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
+      ` · ${thousands(stitches)} stitches · ${figure(yarn_m)} m (${span(yarn_interval_m)}) of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
     ),
     ...garment.warnings.filter(isWarning).map((words) => h("p", { class: "problem-text", role: "alert" }, words)),
     regions(garment, unit),
@@ -68,14 +69,20 @@ function sizes({ sizes: all, regions: parts }) {
   ];
 }
 
-/** @param {number} mm @param {string} unit @param {string} named after the number */
-const long = (mm, unit, named = ` ${unit}`) => (unit === "in" ? (mm / 25.4).toFixed(1) : mm.toFixed(0)) + named;
+/** @param {number} mm @param {string} unit */
+const long = (mm, unit) => (unit === "in" ? (mm / 25.4).toFixed(1) : mm.toFixed(0));
 
 /** @param {GarmentResult} garment @param {string} unit */
 function regions({ regions: all }, unit) {
   return table(
     { class: "planner-table figures full-width small" },
-    ["Region", "Stitches × rows", "By itself, at rest", "Yarn", "Extensibility along rows × columns, mm/N"],
+    [
+      "Region",
+      "Stitches × rows",
+      `By itself, at rest, ${unit}`,
+      "Yarn",
+      h("span", { title: PULL }, `${STRETCH}, rows × columns`),
+    ],
     h(
       "tbody",
       {},
@@ -83,11 +90,11 @@ function regions({ regions: all }, unit) {
         const swatch = h("span", { class: "planner-swatch" });
         swatch.style.background = region.colour;
         return tableRow(
-          h("span", {}, swatch, region.name),
+          h("span", { class: "line" }, swatch, region.name),
           `${region.columns} × ${region.rows}`,
-          `${long(region.width_mm, unit, "")} × ${long(region.height_mm, unit)}`,
+          `${long(region.width_mm, unit)} × ${long(region.height_mm, unit)}`,
           `${figure(region.yarn_m)} m${region.yarn_g === null ? "" : `, ${figure(region.yarn_g)} g`}`,
-          `${figure(region.extensibility_course_mm_per_n)} × ${figure(region.extensibility_wale_mm_per_n)}`,
+          `${percent(region.hand.course.strain)} × ${percent(region.hand.wale.strain)}`,
         );
       }),
     ),
@@ -102,16 +109,16 @@ function pressure({ worn }, unit) {
   return [
     table(
       { class: "planner-table figures full-width small", id: "planner-pressure" },
-      ["Where it is worn", "Garment", "Limb", "Ease", "Pressure"],
+      ["Where it is worn", `Garment, ${unit}`, `Limb, ${unit}`, "Ease", "Pressure"],
       h(
         "tbody",
         {},
         ...worn.map((place) =>
           tableRow(
-            `${place.part}, ${long(place.at_mm, unit)}`,
+            `${place.part}, ${long(place.at_mm, unit)} ${unit}`,
             long(place.rest_mm, unit),
             long(place.worn_mm, unit),
-            percent(place.ease),
+            h("span", { class: "nowrap" }, percent(place.ease)),
             place.mmhg && place.kpa
               ? h(
                   "span",

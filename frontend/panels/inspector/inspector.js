@@ -8,6 +8,7 @@
 
 import { DIRECTIONS, LINES, along } from "../../core/directions.js";
 import { figure, percent, percentRange, percents, range } from "../../core/format.js";
+import { PULL } from "../../core/hand.js";
 import { paced } from "../../core/paced.js";
 import { sourceInWords } from "../../core/plainly.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../../grid/segments.js";
@@ -30,7 +31,7 @@ const COUNT_MS = 80;
 const LOOP_SPREAD = 1.15;
 const PULLS = /** @type {const} */ ([
   ["light", "Light", { title: "A light pull: 0.03 N/mm, 3 N on 10 cm of cloth" }],
-  ["hand", "Hand", { title: "A hand's pull: 0.1 N/mm, 10 N on 10 cm of cloth" }],
+  ["hand", "Hand", { title: PULL }],
   ["firm", "Firm", { title: "A firm pull: 0.3 N/mm, 30 N on 10 cm of cloth" }],
 ]);
 const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);

@@ -8,7 +8,8 @@
  */
 
 import { sourceInWords } from "../../core/plainly.js";
-import { figure, percent, range } from "../../core/format.js";
+import { figure, percent, range, thousands } from "../../core/format.js";
+import { STRETCH } from "../../core/hand.js";
 import { Belonging } from "../../services/belonging.js";
 import { Ink } from "../../design/ink.js";
 import { motifGrid } from "../../grid/grid.js";
@@ -148,7 +149,7 @@ export function atlasTab(studio, context) {
           `${figure(table.modulus_wale_n_per_mm[k])} N/mm`,
           range(table.modulus_wale_interval_n_per_mm.map((ends) => ends[k])),
         ],
-        ["Stretch at 0.1 N/mm", `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`],
+        [STRETCH, `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`],
       ]),
       numbers([
         ["Poisson ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`],
@@ -174,7 +175,7 @@ export function atlasTab(studio, context) {
     }
     table = loaded.get(id) ?? null;
     chosen = null;
-    count.textContent = table ? `${table.repeats.length} repeats` : "";
+    count.textContent = table ? `${thousands(table.repeats.length)} repeats` : "";
     frame.dataset.count = String(table?.repeats.length ?? 0);
     plot.show(table);
     describe();

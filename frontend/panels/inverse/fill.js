@@ -13,7 +13,7 @@
 
 import { UNDO } from "../../core/pointing.js";
 import { ApiError, api } from "../../api.js";
-import { figure, percent } from "../../core/format.js";
+import { figure, percent, thousands } from "../../core/format.js";
 import { shortName } from "../../core/names.js";
 import { Belonging } from "../../services/belonging.js";
 import { Grid } from "../../grid/grid.js";
@@ -195,7 +195,7 @@ export function fromStiffness(studio) {
           onchange: (/** @type {Event} */ { target }) =>
             (part.name = shortName(/** @type {HTMLInputElement} */ (target).value) || part.name),
         }),
-        h("span", { class: "muted figures part-count small nowrap" }, `${part.cells.length} sts`),
+        h("span", { class: "muted figures part-count small nowrap" }, `${thousands(part.cells.length)} sts`),
         iconButton("close", `Remove ${part.name}`, () => {
           parts = parts.filter((other) => other !== part);
           show();
@@ -353,7 +353,7 @@ export function fromStiffness(studio) {
         fillResult.parts.every((part, i) => !missed(part, targeted[i]).length),
         inWords(fillResult),
       ),
-      painted ? h("p", {}, `Painted meanwhile, and left so: ${painted} sts.`) : "",
+      painted ? h("p", {}, `Painted meanwhile, and left so: ${thousands(painted)} sts.`) : "",
       partList(fillResult, targeted),
       fillResult.parts.some(({ repainted }, i) => repainted && targeted[i].gauge)
         ? h("p", { class: "muted small" }, "Before: with your gauge. Now: of the computed size, until you count it.")
@@ -497,7 +497,7 @@ function patchList({ patches, columns }, targeted) {
           "div",
           { class: "small shrinks-x grows" },
           h("strong", { class: "candidate-title line gap-8" }, nameOf(patch.repeat)),
-          h("div", { class: "muted" }, `${part?.name ?? ""}, ${patch.stitches} sts`),
+          h("div", { class: "muted" }, `${part?.name ?? ""}, ${thousands(patch.stitches)} sts`),
           ...AXES.map(({ axis, label }) => {
             const value = patch[`modulus_${axis}_n_per_mm`];
             const [low, high] = patch[`modulus_${axis}_interval_n_per_mm`];

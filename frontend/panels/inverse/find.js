@@ -44,8 +44,6 @@ const QUANTITIES = [
   quantity("anisotropy", "Ratio of the stiffnesses (rows over columns)", "ratio", "", 1),
   quantity("poisson_yx", "Poisson ratio, pulled along rows", "Poisson, rows", "", 0.2, { difference: true }),
   quantity("poisson_xy", "Poisson ratio, pulled along columns", "Poisson, columns", "", 0.4, { difference: true }),
-  quantity("extensibility_course_mm_per_n", "Extensibility, rows", "ext., rows", "mm/N", 10),
-  quantity("extensibility_wale_mm_per_n", "Extensibility, columns", "ext., columns", "mm/N", 10),
 ];
 const COUNT = 12;
 /** How much a target counts. @type {Record<string, number>} */

@@ -7,6 +7,7 @@
  * @import {Studio} from "../../state/studio.js"
  */
 
+import { thousands } from "../../core/format.js";
 import { besides } from "../../core/pointing.js";
 import { nameOf } from "../inverse/apply.js";
 import { action } from "../../actions/registry.js";
@@ -90,7 +91,7 @@ export function create(studio, context) {
             onclick: () => ((chosen = open ? "" : id), show()),
           },
           h("span", {}, name),
-          h("span", { class: "muted figures" }, `${count} sts`),
+          h("span", { class: "muted figures" }, `${thousands(count)} sts`),
         ),
         small(
           "hide",

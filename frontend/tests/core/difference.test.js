@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { difference, interpolated } from "../../core/difference.js";
+import { difference } from "../../core/difference.js";
 
 test("a difference is told in percent, or as a factor, and is clear where the intervals do not meet", () => {
   /** @param {number} value @param {number} low @param {number} high */
@@ -13,10 +13,4 @@ test("a difference is told in percent, or as a factor, and is clear where the in
   assert.deepEqual(difference(answer(10, 5, 30), answer(25, 20, 30)), { text: "× 2.5", clear: false, meet: true });
   assert.equal(difference(answer(10, 9, 11), answer(10.01, 9, 11)).text, "the same");
   assert.equal(difference({ value: undefined }, { value: 1 }).text, "–");
-});
-
-test("a curve is read between its points, and not beyond its end", () => {
-  assert.equal(interpolated([0, 1, 2], [0, 10, 30], 1.5), 20);
-  assert.equal(interpolated([0, 1, 2], [5, 10, 30], 0), 5);
-  assert.equal(interpolated([0, 1, 2], [0, 10, 30], 2.5), undefined);
 });

@@ -1,16 +1,25 @@
 import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
-import { figure, percent, percentRange, percents, range, spread, unbroken } from "../../core/format.js";
+import { figure, percent, percentRange, percents, range, spread, thousands, unbroken } from "../../core/format.js";
 
 test("three figures, with the zeros that count", () => {
   assert.equal(figure(0.223147), "0.223");
   assert.equal(figure(0.056), "0.0560");
   assert.equal(figure(16.12), "16.1");
-  assert.equal(figure(1234.5), "1235");
+  assert.equal(figure(0.09998), "0.100");
+  assert.equal(figure(1234.5), "1,235");
+  assert.equal(figure(999.9), "1,000");
   assert.equal(figure(-0.5), "−0.500");
   assert.equal(figure(0), "0");
   assert.equal(figure(undefined), "–");
   assert.equal(figure(Number.NaN), "–");
+});
+
+test("how many there are", () => {
+  assert.equal(thousands(8866), "8,866");
+  assert.equal(thousands(1000.0), "1,000");
+  assert.equal(thousands(0.04), "0");
 });
 
 test("intervals and percentages", () => {
@@ -38,4 +47,14 @@ test("an interval that is too wide is said in words", () => {
 
 test("a sentence keeps an interval and its unit together", () => {
   assert.equal(unbroken("then 18 – 20 % along rows"), "then 18\u00a0–\u00a020\u00a0% along rows");
+});
+
+test("only here are numbers grouped, and only in one place a hand's pull is named", () => {
+  const folder = new URL("../..", import.meta.url);
+  const OURS = /^(actions|chart|core|design|grid|panels|plots|services|state|tools|widgets)\/.*\.js$/;
+  const files = readdirSync(folder, { recursive: true, encoding: "utf8" }).filter((file) => OURS.test(file));
+  const having = (/** @type {RegExp} */ pattern) =>
+    files.filter((file) => pattern.test(readFileSync(new URL(file, folder), "utf8")));
+  assert.deepEqual(having(/toLocaleString\("en"[,)](?! \{ date)/).sort(), ["core/format.js", "core/plainly.js"]);
+  assert.deepEqual(having(/at 0\.1 N\/mm|under 0\.1 N\/mm|pull: 0\.1 N\/mm/), ["core/hand.js"]);
 });

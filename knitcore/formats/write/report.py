@@ -20,6 +20,7 @@ from knitcore.garment.piece import Piece
 from knitcore.materials import Interval, Material
 from knitcore.mechanics.local_moduli import local_moduli
 from knitcore.prediction.curve import DEFAULT_STRESS_N_PER_MM
+from knitcore.prediction.hand import PULLS_N_PER_MM
 from knitcore.prediction.predict import predict
 from knitcore.prediction.prediction import Along, Prediction, Source
 
@@ -50,6 +51,7 @@ LOCAL_ASSUMPTIONS = (
 OF_KNITS_AND_PURLS = "Segments, maps and yarn are those of the chart's knits and purls."
 ASSUMPTIONS = "Method and assumptions"
 _LINE_CHARACTERS = 112
+HAND_N_PER_MM = PULLS_N_PER_MM["hand"]
 _MAP_MM = (84.0, 62.0)
 
 
@@ -125,7 +127,7 @@ def _regions(
         "stitches",
         "stiffness, rows, N/mm",
         "columns, N/mm",
-        "gives, rows × columns, mm/N",
+        "hand's pull, rows × columns",
     )
     yield from _row(places, head, 30.0)
     yield Lines(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
@@ -138,7 +140,7 @@ def _regions(
             f"    {shortened(part.name)}",
             str(part.stitches),
             *(_value(along.modulus_n_per_mm, along.modulus_interval_n_per_mm) for along in both),
-            " × ".join(f"{1 / along.modulus_n_per_mm:.2f}" for along in both),
+            " × ".join(f"{along.strain(HAND_N_PER_MM):.0%}" for along in both),
         )
         yield from _row(places, cells, y)
         y += 5.0
@@ -203,12 +205,18 @@ def _numbers(
     )
 
 
+def _stretch_by_hand(along: Along) -> tuple[float, Interval]:
+    """Stretch at a hand's pull in per cent, with its interval."""
+    low, high = (100 * float(end) for end in along.strain_interval(HAND_N_PER_MM))
+    return 100 * float(along.strain(HAND_N_PER_MM)), Interval(low, high)
+
+
 _NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
+    (f"stretch at a hand's pull ({HAND_N_PER_MM:g} N/mm), %", _stretch_by_hand),
     (
         "stiffness (Young's modulus), N/mm",
         lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm),
     ),
-    ("extensibility, mm/N", lambda a: (1 / a.modulus_n_per_mm, a.extensibility_interval_mm_per_n)),
     ("narrowing when pulled", lambda a: (a.poisson, a.poisson_interval)),
     ("stitch at rest, mm", lambda a: (a.relaxed_mm, a.relaxed_interval_mm)),
 )

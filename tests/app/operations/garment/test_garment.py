@@ -51,6 +51,17 @@ def test_a_garment_is_kept_as_a_design(client: TestClient) -> None:
     assert wrist["yarn_m"] == pytest.approx(wrist["stitches"] * mm_a_stitch / 1000, rel=0.01)
 
 
+def test_a_region_stretches_by_hand_as_its_fabric_does(client: TestClient) -> None:
+    planned = post(client, "garment", {"garment": {"template": "glove"}, "material": "acrylic"})
+    for region in planned["regions"]:
+        request = {"chart": region["fill"], "material": "acrylic", "hand": True}
+        hand = next(p for p in post(client, "predict", request)["hand"] if p["pull"] == "hand")
+        for way in ("course", "wale"):
+            assert region["hand"][way]["word"] == hand[way]["word"]
+            strain = pytest.approx(hand[way]["strain"])
+            assert region["hand"][way]["strain"] == strain
+
+
 def test_gauge_yarn_and_pressure_of_ones_own(client: TestClient) -> None:
     brace = {"template": "wrist-brace", "wrist_mm": 170, "length_mm": 90, "target_mmhg": 20}
     request = {"garment": brace, "material": "acrylic", "linear_density_tex": 500}
