@@ -200,9 +200,9 @@ def _numbers(
     for index, cells in enumerate(rows):
         yield from _row((MARGIN_MM, 70.0, 132.0), cells, 36.0 + 5.2 * index, 3.2)
     yield Lines(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
-    yield Label(
-        MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {SOURCES[prediction.provenance]}.", 3.0
-    )
+    source = f"Intervals cover 90 %. Source: {SOURCES[prediction.provenance]}."
+    pull = f"A hand's pull is {HAND_N_PER_MM:g} N/mm, 10 N on 10 cm of cloth."
+    yield Label(MARGIN_MM, 64.0, f"{source} {pull}", 3.0)
 
 
 def _stretch_by_hand(along: Along) -> tuple[float, Interval]:
@@ -212,7 +212,7 @@ def _stretch_by_hand(along: Along) -> tuple[float, Interval]:
 
 
 _NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
-    (f"stretch at a hand's pull ({HAND_N_PER_MM:g} N/mm), %", _stretch_by_hand),
+    ("stretch at a hand's pull, %", _stretch_by_hand),
     (
         "stiffness (Young's modulus), N/mm",
         lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm),
