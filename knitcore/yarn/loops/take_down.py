@@ -11,6 +11,7 @@ yarn is smooth, so the usual one takes over as soon as it can.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -36,7 +37,8 @@ _COURSE_PER_LOOP, _WALE_PER_LOOP = 0.27, 0.19
 """Size of a stitch over its loop length, by which pulls per mm become forces."""
 _SCALES = tuple(0.45 * 1.2**k for k in range(8))
 """Widths of a drawn wale over the loop length: the least that leaves room for the cores."""
-_LAYER_RADII = 1.8
+_LAYERS_RADII = 1.8, 2.4
+"""Distances of layers in the first shape, in radii; the next is tried where the cores lack room."""
 _ROOM = 1.1
 """Least distance of strands in the first shape, in diameters of the core."""
 _LAST_STEP, _LEAST_STEP = 0.08, 0.015
@@ -65,9 +67,9 @@ def room_for_yarn(graph: StitchGraph, yarn: YarnModel, loop_length_mm: float) ->
         If it cannot be drawn.
     """
     drawing = DrawableYarn(graph)
-    for scale in _SCALES:
+    for layer, scale in product(_LAYERS_RADII, _SCALES):
         size = scale * loop_length_mm
-        drawn = drawing(size, size, _LAYER_RADII * yarn.radius_mm)
+        drawn = drawing(size, size, layer * yarn.radius_mm)
         energy = StitchEnergy(drawn.cell, yarn, drawn.loop_lengths_mm, Convention.PUBLISHED)
         if clearance_at(energy, drawn.state).min_distance_mm > 2.0 * _ROOM * yarn.core_radius_mm:
             return drawn

@@ -1,6 +1,7 @@
 """Yarn that is drawn in to its length."""
 
 import numpy as np
+import pytest
 
 from knitcore.chart.symbol_chart import SymbolChart
 from knitcore.yarn.loops.take_down import GRID, TakeDown, room_for_yarn
@@ -16,3 +17,11 @@ def test_a_cable_is_drawn_finely_and_drawn_in_on_the_usual_grid() -> None:
     assert energy.cell.grid == GRID
     assert np.abs(minimum.terms.excess_mm).max() < 0.02 * LOOP_MM * drawn.cell.wales
     assert minimum.min_distance_mm > 2.0 * ACRYLIC.core_radius_mm
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_every_cable_of_up_to_six_wales_has_room_for_its_yarn(side: str) -> None:
+    for front, back in [(n, m) for n in range(1, 6) for m in range(1, 7 - n)]:
+        chart = SymbolChart.parse(f"[{front}/{back}{side}];{'K' * (front + back)}")
+        drawn = room_for_yarn(chart.graph, ACRYLIC, LOOP_MM)
+        assert drawn.exact, chart
