@@ -210,7 +210,7 @@ class SceneWriter:
     def _draw_scale(self, ground: Ground) -> None:
         """A line of round length below the fabric, at its right."""
         width, height = ground.extent_mm
-        length = round_length_mm(float(width))
+        length = round_length_mm(width, height)
         right, below = float(width) / 2, -float(height) / 2 - _scale_below_mm(ground)
         tick = 0.06 * length
         points = np.array(
@@ -260,15 +260,15 @@ class SceneWriter:
             old.remove()
 
 
-def round_length_mm(width_mm: float) -> float:
-    """1, 2 or 5 times a power of ten, about a fifth of a width.
+def round_length_mm(width_mm: float, height_mm: float) -> float:
+    """1, 2 or 5 times a power of ten, about a fifth of the longer side of a cloth.
 
     Examples
     --------
-    >>> round_length_mm(106.0), round_length_mm(520.0), round_length_mm(9.0)
+    >>> round_length_mm(106.0, 40.0), round_length_mm(40.0, 520.0), round_length_mm(9.0, 9.0)
     (20.0, 100.0, 1.0)
     """
-    length = width_mm / 5
+    length = max(width_mm, height_mm) / 5
     power = 10.0 ** np.floor(np.log10(length))
     return float(power * max(step for step in (1, 2, 5) if power * step <= length * (1 + 1e-9)))
 

@@ -115,7 +115,7 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
             ViewResult(
                 stitches=state.views.open(name, drawing.weight).show(drawing, face),
                 source=drawing.part.shapes.source,
-                scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
+                scale_mm=round_length_mm(*drawing.ground.extent_mm),
                 url=f"/view/{design}/#{code}",
             ),
         )

@@ -283,10 +283,11 @@ def test_the_light_between_the_yarn_is_sent_with_its_corners(
 
 
 def test_the_scale_says_how_long_it_is(view: View) -> None:
-    """A round length of about a fifth of the cloth's width, in its own words."""
+    """A round length of about a fifth of the cloth's longer side, in its own words."""
     nodes = view.server.scene._handle_from_node_name
-    for columns, length_mm, words in ((4, 2.0, "2 mm"), (30, 20.0, "2 cm"), (200, 100.0, "10 cm")):
-        _show(view, SMALL | {"chart": "\n".join(["K" * columns] * 4)})
+    sizes = ((4, 4, 2.0, "2 mm"), (30, 4, 20.0, "2 cm"), (200, 4, 100.0, "10 cm"))
+    for columns, rows, length_mm, words in (*sizes, (4, 60, 20.0, "2 cm")):
+        _show(view, SMALL | {"chart": "\n".join(["K" * columns] * rows)})
         (left, _, _), (right, _, _) = nodes["/scale"].points[0]
         assert right - left == pytest.approx(UNITS_PER_MM * length_mm, rel=1e-5)
         assert nodes["/scale/words"].text == words
