@@ -81,8 +81,8 @@ class RelaxedStitchChart(RelaxedChart):
         cloth.
     hole_share : part of the cloth that no yarn covers.
     eyelet_mm2 : mean area of the holes of yarn overs, neighbouring ones together; None without any.
-    crossings : crossings of the first shape that the chart asks for. All steps of the yarn from
-        there are certified, so that they are kept.
+    crossings : crossings of the first shape that the chart asks for. They are kept: the yarn is
+        knotted at the end as it was at first (:mod:`knitcore.yarn.solve.clasps`).
     """
 
     stitches: SymbolChart
