@@ -280,8 +280,8 @@ and `rs` state these as their intervals.
 
 ![Models of the yarn against knitted fabric](figures/evidence-yarn-models.svg)
 
-*Not shown*: mixed charts, of which there are no stretch tests; friction and set, which
-[change little](decisions.md#rejected-as-physics-of-the-yarn-level).
+*Not shown*: mixed charts, of which there are no stretch tests; friction and set, which the yarn
+level leaves out.
 """
 
 

@@ -170,9 +170,10 @@ def explored(energy: CellEnergy, cancelled: Cancelled | None = None) -> Minimum:
 
 def after_rounds(sheet: WholeShape, left_n: float) -> str:
     """The note on a shape that rounds led to."""
+    gained = 0.0 - round(sheet.energy_change, 4)
     return (
         f"The last of {sheet.earlier + len(sheet.rounds)} rounds changed the energy by "
-        f"{0.0 - round(sheet.energy_change, 4):+.2%} and a size by {sheet.size_change:.2%}; more rounds may take "
+        f"{gained:+.2%} and a size by {sheet.size_change:.2%}; more rounds may take "
         f"up to {sheet.may_fall:.1%} of the energy away. Forces of up to {left_n:.1e} N are left "
         "on the yarn."
     )
