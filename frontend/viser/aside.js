@@ -1,13 +1,28 @@
 /**
  * Without a GPU a browser that shows what WebGL drew waits until all of it is drawn, in a process that its
  * pages share: for as long as a frame of the 3D view takes, the page around shows nothing new. So frames are
- * drawn out of sight, and the canvas gets each as a picture once it is finished.
+ * drawn out of sight, and the canvas gets each as a picture once it is finished. A frame has rough edges, as smoothing it
+ * at once would take two to four times as long; where nothing moves it is drawn again, each time shifted by another part
+ * of a pixel, and the mean of all is shown.
  *
  * A plain script without imports, before frame.js: the service puts it into viser's page.
  */
 
 /** Time between two looks whether a frame is finished. */
 const LOOK_MS = 4;
+/** Parts of a pixel by which the frames of a smooth picture are shifted: eight queens on a board, the first in its place. */
+const SHIFTS = /** @type {[number, number][]} */ (
+  [
+    [0, 0],
+    [3, -1],
+    [-1, 3],
+    [1, -3],
+    [-3, 1],
+    [2, 2],
+    [-2, -2],
+    [-4, 4],
+  ].map((place) => place.map((step) => step / 8))
+);
 
 // eslint-disable-next-line no-unused-vars -- frame.js has it
 class Aside {
@@ -20,6 +35,11 @@ class Aside {
   /** WebGL's own memory for the pixels of a frame, and ours. */
   #read;
   #bytes = new Uint8Array();
+  /** Pixels of the frame of what is shown that was not shifted. */
+  #plain = new Uint8Array();
+  /** Sum of the frames that are shown. */
+  #sum = new Uint16Array();
+  #frames = 0;
   /** Number of the frame that was drawn last. */
   #frame = 0;
 
@@ -73,19 +93,40 @@ class Aside {
     return { width, height };
   }
 
-  /** Show the pixels. WebGL has the lowest row first, and colours that are multiplied by their cover. */
-  #paint(size = this.#fetch()) {
+  /** By how much the next frame of a smooth picture is to be shifted, in pixels; null once it is smooth. */
+  get shift() {
+    return SHIFTS[this.#frames] ?? null;
+  }
+
+  /** Take the pixels in, as a new picture or as one more frame of the last; false where nothing is new. @param {boolean} more */
+  #take(more) {
     const { gl } = this;
-    const { width, height } = size;
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, this.#read);
     gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, this.#bytes);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    if (more && this.#sum.length === this.#bytes.length) {
+      for (let at = 0; at < this.#bytes.length; at++) this.#sum[at] += this.#bytes[at];
+      this.#frames++;
+      return true;
+    }
+    const [before, now] = [this.#plain, this.#bytes].map(({ buffer }) => new Uint32Array(buffer));
+    if (before.length === now.length && before.every((pixel, at) => pixel === now[at])) return false;
+    this.#plain = this.#bytes.slice();
+    this.#sum = Uint16Array.from(this.#bytes);
+    this.#frames = 1;
+    return true;
+  }
+
+  /** Show the pixels. WebGL has the lowest row first, and colours that are multiplied by their cover. */
+  #paint(size = this.#fetch(), more = false) {
+    if (!this.#take(more)) return;
+    const { width, height } = size;
     const image = new ImageData(width, height);
     const { data } = image;
     const long = 4 * width;
     for (let row = 0; row < height; row++) {
       const from = long * (height - 1 - row);
-      data.set(this.#bytes.subarray(from, from + long), long * row);
+      for (let at = 0; at < long; at++) data[long * row + at] = Math.round(this.#sum[from + at] / this.#frames);
     }
     for (let alpha = 3; alpha < data.length; alpha += 4) {
       const cover = data[alpha] / 255;
@@ -103,8 +144,9 @@ class Aside {
    *
    * @param {(paint: FrameRequestCallback) => unknown} request the browser's next frame
    * @param {() => void} then
+   * @param {(() => boolean) | null} still of a shifted frame: whether what is shown is still the same
    */
-  show(request, then) {
+  show(request, then, still = null) {
     const frame = ++this.#frame;
     const current = () => frame === this.#frame; // viser may draw several before the browser shows one
     this.busy = true;
@@ -118,7 +160,7 @@ class Aside {
       const size = this.#fetch();
       const paint = () => {
         if (!current()) return;
-        if (!this.gl.isContextLost()) this.#paint(size);
+        if (!this.gl.isContextLost() && (still?.() ?? true)) this.#paint(size, still !== null);
         setTimeout(end);
       };
       this.#finished(() => request(paint));

@@ -22,6 +22,8 @@
   const TURNING = 0.5;
   /** How long something new takes to be drawn. */
   const NEWS_MS = 1500;
+  /** After this time without anything new the view is drawn smooth, where a frame is rough. */
+  const REST_MS = 300;
   /** After this time it is looked whether something was drawn. */
   const ANSWER_MS = 20;
   /** Frames that shapes have to be built in, before the cloth is drawn without them. */
@@ -215,7 +217,12 @@
   let next = 1e9;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let pause;
-  let newsUntil = 0;
+  /** When something new came last. */
+  let news = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let smoothing;
+  /** Where the camera was in the last frame that was not shifted. */
+  let from = "";
   let lastEnd = 0;
   let held = false;
   let seen = false;
@@ -232,6 +239,8 @@
   let cost = 0;
   /** Whether what viser draws now is left out. */
   let muted = false;
+  /** Have viser draw though nothing is new. */
+  let drawAgain = () => {};
   /** Whether it has begun to draw; it asks for more frames than it draws. */
   let begun = false;
 
@@ -249,7 +258,7 @@
   /** Time until the next frame may be drawn, in ms: on a slow machine viser's idle frames wait. */
   function rest() {
     const now = performance.now();
-    if (!slow || !seen || now < newsUntil) return 0;
+    if (!slow || !seen || now < news + NEWS_MS || aside?.shift) return 0;
     return Math.max(0, lastEnd + PAUSE_MS - now);
   }
 
@@ -276,9 +285,14 @@
     const idle = mixed || !complete();
     muted = idle;
     begun = false;
-    callback(time);
+    const shift =
+      seen && !idle && start >= news + REST_MS && from && seenFrom() === from ? (aside?.shift ?? null) : null;
+    if (shift) drawShifted(shift, () => callback(time));
+    else callback(time);
     const drawn = begun && !idle;
     if (begun) mixed = false;
+    if (drawn && seenFrom() !== from) wake(false); // it glides to its rest
+    if (drawn && !shift) from = seenFrom();
     muted = false;
     if (query) gl?.endQuery(gl.ANY_SAMPLES_PASSED);
     steer();
@@ -288,12 +302,32 @@
       else timed(start);
       if (query) answer(query);
       catchUp();
+      smooth();
       release();
     };
     // What the browser itself does for the frame counts, too.
-    if (aside && drawn) aside.show(request, ended);
+    if (aside && drawn) aside.show(request, ended, shift ? () => news < start : null);
     else setTimeout(ended);
   }
+
+  /** Ask for a frame more of a smooth picture, once nothing new has come for a while. */
+  function smooth() {
+    clearTimeout(smoothing);
+    if (aside?.shift) smoothing = setTimeout(() => drawAgain(), Math.max(0, news + REST_MS - performance.now()));
+  }
+
+  /** Draw with what the camera sees shifted, in pixels. @param {[number, number]} shift @param {() => void} draws */
+  function drawShifted([right, up], draws) {
+    const { elements } = viser().camera.projectionMatrix;
+    const [x, y] = [elements[8], elements[9]];
+    elements[8] += (2 * right) / /** @type {WebGL2RenderingContext} */ (gl).drawingBufferWidth;
+    elements[9] += (2 * up) / /** @type {WebGL2RenderingContext} */ (gl).drawingBufferHeight;
+    draws();
+    [elements[8], elements[9]] = [x, y];
+  }
+
+  /** Where the camera is. */
+  const seenFrom = () => String(viser()?.camera?.matrixWorld.elements ?? "");
 
   /** A frame ends that was begun at this time. @param {number} start */
   function timed(start) {
@@ -311,6 +345,7 @@
     const control = client?.cameraControl;
     if (!control || control.dollyToCursor) return;
     const { requestRender } = client;
+    drawAgain = requestRender;
     client.requestRender = () => {
       wake(false);
       requestRender();
@@ -321,7 +356,8 @@
   /** Something new is to be drawn. @param {boolean} scene sent by the service */
   function wake(scene) {
     if (scene && fed < 0) fed = 0;
-    newsUntil = performance.now() + NEWS_MS;
+    news = performance.now();
+    smooth();
     release();
   }
   for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "resize"]) {

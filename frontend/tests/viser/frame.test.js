@@ -86,6 +86,10 @@ async function slowClient(renderer = "") {
     copied: 0,
     /** Whether what is drawn without a GPU is finished. */
     finished: true,
+    /** The bytes of every pixel, without a GPU; another one in each frame that says nothing of it. @type {number | null} */
+    light: null,
+    /** That of the picture on the canvas. */
+    shown: 0,
     /** Of them those that reached the canvas. */
     drawn: 0,
     requested: false,
@@ -128,9 +132,13 @@ async function slowClient(renderer = "") {
   };
   const draws = ["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"];
   const others = ["deleteSync", "flush", "bindFramebuffer", "bindBuffer", "bufferData", "readPixels"];
-  const more = ["getBufferSubData", "beginQuery", "endQuery", "deleteQuery"];
+  const more = ["beginQuery", "endQuery", "deleteQuery"];
   for (const name of [...draws, ...others, ...more]) Object.assign(gl, { [name]: () => {} });
   for (const name of ["fenceSync", "createBuffer"]) Object.assign(gl, { [name]: () => ({}) });
+  Object.assign(gl, {
+    /** @param {any[]} to */
+    getBufferSubData: (...to) => to[2].fill(client.light ?? client.frames % 250),
+  });
   client.gl = gl;
   const page = Object.assign(emptyFrame(), {
     HTMLCanvasElement: class {
@@ -138,7 +146,13 @@ async function slowClient(renderer = "") {
       height = 150;
       /** @param {string} kind */
       getContext(kind) {
-        return kind === "2d" ? { putImageData: () => client.copied++ } : gl;
+        if (kind !== "2d") return gl;
+        return {
+          putImageData: (/** @type {ImageData} */ { data }) => {
+            client.copied++;
+            client.shown = data[3];
+          },
+        };
       }
     },
     OffscreenCanvas: class {
@@ -405,4 +419,56 @@ test("without a GPU the canvas gets a frame once it is finished, and the next on
   wait();
   assert.equal(client.frames, frames + 2);
   assert.equal(client.copied, copied + 2);
+});
+
+test("without a GPU a view that rests is drawn smooth: shifted seven times, and the mean is shown", async () => {
+  const { client, page } = await slowClient("SwiftShader");
+  const camera = { projectionMatrix: { elements: Array(16).fill(0) }, matrixWorld: { elements: Array(16).fill(0) } };
+  page.__viserMutable = { camera, cameraControl: {}, requestRender: () => client.invalidate() };
+  /** @type {string[]} */
+  const shifts = [];
+  const { clear } = client.gl;
+  const drawing = (/** @type {() => void} */ what) => {
+    client.gl.clear = () => {
+      clear();
+      what();
+    };
+  };
+  drawing(() => {
+    shifts.push(String(camera.projectionMatrix.elements.slice(8, 10)));
+    client.light = shifts.length < 4 ? 100 : 180;
+  });
+  const turns = (/** @type {number} */ count) => {
+    for (let turn = 0; turn < count; turn++) {
+      client.pass(50);
+      client.frame();
+    }
+  };
+  client.invalidate();
+  client.pass(40_000);
+  turns(200);
+  assert.equal(shifts.length, 8);
+  assert.equal(new Set(shifts).size, 8, "two frames were shifted alike");
+  assert.equal(shifts[0], "0,0");
+  assert.equal(client.shown, (3 * 100 + 5 * 180) / 8);
+  assert.deepEqual(camera.projectionMatrix.elements, Array(16).fill(0));
+
+  client.light = 100; // the next frame is the first of these again, so the smooth picture stays
+  drawing(() => shifts.push("again"));
+  const { copied } = client;
+  page.__viserMutable.requestRender();
+  turns(200);
+  assert.equal(shifts.length, 9);
+  assert.equal(client.copied, copied);
+
+  drawing(() => {
+    shifts.push("glides");
+    client.light = shifts.length < 14 ? 0 : 200;
+    if (shifts.length < 15) camera.matrixWorld.elements[0]++;
+  });
+  client.invalidate();
+  client.pass(40_000);
+  turns(400);
+  assert.equal(client.shown, 200, "frames were mixed while the camera moved");
+  assert.ok(shifts.length <= 15 + 8);
 });
