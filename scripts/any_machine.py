@@ -105,6 +105,11 @@ def cases() -> dict[str, tuple[str, dict[str, Any]]]:
     ask("relax", "K/P", "acrylic", branch="published", fresh=True)
     ask("relax", "KP/PK", "cotton", branch="published", fresh=True)
     ask("relax", "KP", "acrylic", cell_wale_mm=2.2, fresh=True)
+    for chart in ("PKKKKP;P[2/2R]P;PKKKKP;PKKKKP", "KKKKKK;KO/\\OK", "TP;KP;PT;PK"):
+        ask("relax", chart, "acrylic", fresh=True)
+        ask("relax", chart, "cotton", fresh=True, history="as-knitted")
+    ask("relax", "KKKKKK;KO/\\OK", "acrylic", fresh=True, history="agitated")
+    ask("relax", "KKKK;VKVK;KKKK;KVKV", "cotton", fresh=True)
     ask("whole", "KPKP/KPKP/KPKP/KPKP", "cotton", flat=True)
     ask("whole", "KPKP/KPKP/KPKP/KPKP", "acrylic")
     ask("whole", "KKKPK/KPKKP/PKPKK/KKPPK/PPKKP", "acrylic")
@@ -143,6 +148,7 @@ SHORT = (
     "relax KP cotton fresh=True",
     "relax KKKKP cotton fresh=True",
     "relax PKPK/PKKP/PKPK/KPKP cotton fresh=True",
+    "relax PKKKKP;P[2/2R]P;PKKKKP;PKKKKP acrylic fresh=True",
     "whole KPKP/KPKP/KPKP/KPKP cotton flat=True",
     "bend KKP acrylic loop_length_mm=12.0",
     "curl rib 12x8",

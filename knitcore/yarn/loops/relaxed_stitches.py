@@ -44,7 +44,7 @@ TAKE_DOWN_N_PER_MM = 0.03
 _RELEASE = 3
 """Steps in which a pull is let go."""
 _SETTLED = Options(tolerance=1e-6, slack=1e-6, iterations=150)
-_PULLED = Options(tolerance=1e-4, slack=1e-4, iterations=150, leaves_saddles=False)
+_PULLED = Options(tolerance=1e-4, slack=1e-4, iterations=150, leaves_saddles=False, rounded=True)
 """Settings under a pull that is let go afterwards: it may hold a saddle, which friction leaves."""
 _RUBBED = Options(tolerance=1e-5, slack=1e-5, iterations=60)
 CAUTION = (

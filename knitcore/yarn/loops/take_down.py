@@ -47,7 +47,7 @@ _LOOSER, _LOOSEST = 1.1, 3.0
 """Yarn of loops that cross, over what they had when they locked, and the most that is tried."""
 _OVERLONG = 0.02
 """Excess of a row's yarn, in loop lengths, with which the last stage still counts."""
-_STAGE = Options(tolerance=1e-2, slack=1e-2, iterations=5, leaves_saddles=False)
+_STAGE = Options(tolerance=1e-2, slack=1e-2, iterations=5, leaves_saddles=False, rounded=True)
 GRID = SplineGrid(16, 3)
 """Resolution of the shape, as soon as it is fine enough."""
 _UNEVEN = 2.0

@@ -28,7 +28,7 @@ from knitcore.base.threads import in_one_blas_thread
 from knitcore.yarn.model.energy import CellEnergy, Slope, Terms
 from knitcore.yarn.solve.fronts import Dissection, Room
 from knitcore.yarn.solve.systems import DenseSystem, SparseSystem, System
-from knitcore.yarn.solve.topology import Trajectory
+from knitcore.yarn.solve.topology import Trajectory, rounded
 
 COURSE, WALE = -2, -1
 """Places of the two cell sizes among the unknowns."""
@@ -68,6 +68,9 @@ _INDEFINITE_GROWTH = 3.0
 _POWER_STEPS = 2
 _SADDLE_STEPS = 40
 """Inverse iterations for the direction of lowest curvature, on the way and at a saddle."""
+_PLACES, _TENSIONS, _DIGITS = 2.0**-13, 2.0**-8, 2.0**-8
+"""Steps to which a way is rounded: of places, in radii; of tensions, in B / L²; of curvatures,
+relative to them."""
 _GREATEST = 0.99
 """Components of a direction from this part of the greatest on count as equal to it."""
 
@@ -90,6 +93,9 @@ class Options:
         straight step stretches it, and would have to be short. Small cells do without.
     leaves_saddles : whether the search goes on from a saddle; on the way to another shape it need
         not.
+    rounded : whether places, tensions and curvatures are rounded after every step, far above the
+        last bit, which another processor may have otherwise. A way past saddles, which would
+        enlarge that difference to another shape, is then the same everywhere.
     """
 
     pair_cap: float = 0.3
@@ -102,6 +108,7 @@ class Options:
     side: float = 1.0
     mended: bool = True
     leaves_saddles: bool = True
+    rounded: bool = False
 
 
 TIGHT = Options(tolerance=1e-10, slack=1e-9)
@@ -188,7 +195,8 @@ class _Descent:
     ) -> None:  # fmt: skip
         self.energy = energy
         self.options = options
-        self.trajectory = Trajectory(energy, state, options.pair_cap)
+        place_mm = _PLACES * energy.yarn.radius_mm if options.rounded else 0.0
+        self.trajectory = Trajectory(energy, state, options.pair_cap, place_mm)
         self.tension = np.zeros(energy.constraints) if tension is None else tension.copy()
         self.free = np.ones(energy.cell.unknowns, bool)
         self.free[held] = False
@@ -244,7 +252,7 @@ class _Descent:
         elif ratio < 0.2 and not moving:
             self._damp(2.0)
         trajectory.advance(taken)
-        self.tension = self.tension + change
+        self.tension = self._rounded(self.tension + change)
         self.steps += 1
         if not moving:
             self._take_chord_steps(system, predicted)
@@ -265,6 +273,12 @@ class _Descent:
             if not self.stable:
                 self.converged = not self._leave_saddle(system, slope.lengths, least)
         return True
+
+    def _rounded(self, tension: Array) -> Array:
+        """Tensions, rounded where that is wanted."""
+        if not self.options.rounded:
+            return tension
+        return rounded(tension, _TENSIONS * self.energy.unit / self.energy.mean_loop_mm)
 
     def _system(self, slope: Slope) -> System:
         if slope.sparse is None:
@@ -289,6 +303,9 @@ class _Descent:
             self._damp(_INDEFINITE_GROWTH, _INDEFINITE_DAMPING)
         if indefinite or self.lowest < 0.0:
             self.lowest, self.softest = system.softest(self.softest, _POWER_STEPS)
+            if self.options.rounded and self.lowest:
+                digit = 2.0 ** np.floor(np.log2(abs(self.lowest)))
+                self.lowest = float(rounded(self.lowest, _DIGITS * digit))
 
     def _leave_saddle(self, system: System, lengths: Array, least: float) -> bool:
         """Descend along the most negative curvature that the constraints allow; False if there is
@@ -337,7 +354,7 @@ class _Descent:
             ):
                 return
             trajectory.advance(taken)
-            self.tension = tension
+            self.tension = self._rounded(tension)
             if actual < _WORTH * gain:
                 return
             gain = actual

@@ -31,6 +31,8 @@ SKIN = 0.9
 """Reach of a new list of near pairs beyond 2r, in radii."""
 RENEW = 0.4
 """Least certain reach of the list beyond 2r, in radii, before it is renewed."""
+_SHORTER = 2.0**-20
+"""Parts of a step in which it is shortened where places are rounded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,10 +174,14 @@ class Trajectory:
     energy : the energy of the cell.
     state : where to begin.
     pair_cap : longest change of the vector between near samples in one step, in radii.
+    rounded_mm : step to which the unknowns are rounded where a step ends; 0 where they are not.
     """
 
-    def __init__(self, energy: CellEnergy, state: Array, pair_cap: float) -> None:
+    def __init__(
+        self, energy: CellEnergy, state: Array, pair_cap: float, rounded_mm: float = 0.0
+    ) -> None:
         self._energy = energy
+        self._rounded_mm = rounded_mm
         self._radius = energy.yarn.radius_mm
         self._cap = pair_cap * self._radius
         curve = energy.curve(state)
@@ -214,8 +220,13 @@ class Trajectory:
             mended_step = self.certified(straight * step + mended)
             return replace(mended_step, fraction=straight * mended_step.fraction)
         state = here.state + step
+        if self._rounded_mm:
+            state = rounded(state, self._rounded_mm)
+            step = state - here.state
         fraction, approach, curve = self._allowed(state)
         if fraction < 1.0:
+            if self._rounded_mm:
+                fraction -= fraction % _SHORTER
             state = here.state + fraction * step
             curve = here.curve + fraction * (curve - here.curve)
         terms = self._energy.value(state, curve, self._pairs)
@@ -247,3 +258,8 @@ class Trajectory:
     def _list(self, curve: Array, state: Array) -> None:
         self._reach = (2.0 + SKIN) * self._radius
         self._pairs, self._start = self._energy.pairs(curve, state, self._reach)
+
+
+def rounded(values: Array | float, step: float) -> Array:
+    """The nearest multiples of a step."""
+    return np.asarray(step * np.round(np.asarray(values) / step))

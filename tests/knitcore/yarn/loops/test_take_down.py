@@ -1,5 +1,7 @@
 """Yarn that is drawn in to its length."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -25,3 +27,12 @@ def test_every_cable_of_up_to_six_wales_has_room_for_its_yarn(side: str) -> None
         chart = SymbolChart.parse(f"[{front}/{back}{side}];{'K' * (front + back)}")
         drawn = room_for_yarn(chart.graph, ACRYLIC, LOOP_MM)
         assert drawn.exact, chart
+
+
+def test_the_last_bits_of_places_do_not_change_where_the_yarn_ends() -> None:
+    drawn = room_for_yarn(SymbolChart.parse("KKKK;KO/K").graph, ACRYLIC, LOOP_MM)
+    take_down = TakeDown(ACRYLIC, Convention.PUBLISHED, np.full(drawn.cell.rows, LOOP_MM))
+    noise = 1e-14 * np.random.default_rng(3).standard_normal(drawn.state.shape)
+    other = replace(drawn, state=drawn.state * (1.0 + noise))
+    (_, here), (_, there) = take_down(drawn), take_down(other)
+    assert np.array_equal(here.state, there.state)
