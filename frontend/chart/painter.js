@@ -14,7 +14,6 @@ import { inked } from "../design/ink.js";
 import { withPlace } from "../design/repeats.js";
 import { combined, selects } from "../design/selection.js";
 import { Brush } from "../grid/stroke.js";
-import { listenToPinches } from "./pinch.js";
 import { boxAt, placedAt, placedBox, shifted } from "./placing.js";
 
 /**
@@ -48,7 +47,7 @@ export class Painter {
     this.studio = studio;
     this.#ink = studio.ink.value;
     const { canvas } = view;
-    listenToPinches(view, () => this.#cancel());
+    void import("./pinch.js").then(({ listenToPinches }) => listenToPinches(view, () => this.#cancel()));
     canvas.addEventListener("pointerdown", (event) => this.#down(event));
     canvas.addEventListener("pointermove", (event) => this.#move(event));
     canvas.addEventListener("pointerup", () => this.#up());
