@@ -10,7 +10,7 @@
 
 /** Time between two looks whether a frame is finished. */
 const LOOK_MS = 4;
-/** Parts of a pixel by which the frames of a smooth picture are shifted: eight queens on a board, the first in its place. */
+/** Parts of a pixel by which the frames of a smooth picture are shifted, right and up: each eighth once, and the first not at all. */
 const SHIFTS = /** @type {[number, number][]} */ (
   [
     [0, 0],
@@ -39,6 +39,7 @@ class Aside {
   #plain = new Uint8Array();
   /** Sum of the frames that are shown. */
   #sum = new Uint16Array();
+  /** How many they are. */
   #frames = 0;
   /** Number of the frame that was drawn last. */
   #frame = 0;
