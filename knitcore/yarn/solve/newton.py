@@ -95,7 +95,8 @@ class Options:
         not.
     rounded : whether places, tensions and curvatures are rounded after every step, far above the
         last bit, which another processor may have otherwise. A way past saddles, which would
-        enlarge that difference to another shape, is then the same everywhere.
+        enlarge that difference to another shape, is then the same everywhere. Not with fixed sizes,
+        which need not be such numbers.
     """
 
     pair_cap: float = 0.3
