@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.base.arrays import Array, Indices
 from knitcore.chart.fabric import PHASES, Direction
@@ -33,9 +32,6 @@ MAX_TURNED = 200
 NEAR = 0.045
 """Single stitches are not turned if a mixture is nearer than this (in logarithms)."""
 _PARTNERS = 140
-_LOOKED_AT = 20_000
-"""Nearest estimates of either direction that are looked at: what is learnt at the joints moves
-them less than that."""
 _MIN_WIDTH, _MAX_WIDTH = 1, 9
 _MAX_SIDE = 12
 
@@ -97,7 +93,7 @@ class Mixer:
         look : called between predictions; may raise to stop.
         """
         target = np.log([course_n_per_mm, wale_n_per_mm])
-        tables = [table.within(most_rows, most_columns).near(target) for table in self._estimates]
+        tables = [table.within(most_rows, most_columns) for table in self._estimates]
         best: Stripes | None = None
         learnt = np.zeros(2)
         tried: set[StitchChart] = set()
@@ -148,7 +144,7 @@ class Mixer:
         """The stripes with the nearest estimates that have not been tried."""
         ranked: list[tuple[float, StitchChart, Array]] = []
         for table in tables:
-            off = table.off(target)
+            off = np.maximum(*np.nan_to_num(np.abs(table.log_moduli - target)).T)
             count = min(len(tried) + 1, len(off))
             for k in np.argpartition(off, count - 1)[:count].tolist() if count else []:
                 chart = self._chart(table, k)
@@ -227,26 +223,13 @@ class _Estimates:
         """The stripes that fit."""
         course = self.direction is Direction.COURSE
         length, side = (most_columns, most_rows) if course else (most_rows, most_columns)
-        return self._chosen((self.widths.sum(axis=1) <= length) & (self.side <= side))
-
-    def near(self, target: Array) -> _Estimates:
-        """The nearest to a target."""
-        if len(self.side) <= _LOOKED_AT:
-            return self
-        return self._chosen(np.sort(np.argpartition(self.off(target), _LOOKED_AT)[:_LOOKED_AT]))
-
-    def off(self, target: Array) -> Array:
-        """(n,) larger deviation of either modulus from a target (NaN is none), in logarithms."""
-        course, wale = np.nan_to_num(np.abs(self.log_moduli - target)).T
-        return np.asarray(np.maximum(course, wale))
-
-    def _chosen(self, which: Indices | NDArray[np.bool_]) -> _Estimates:
+        fits = (self.widths.sum(axis=1) <= length) & (self.side <= side)
         return _Estimates(
             self.direction,
-            self.partners[which],
-            self.widths[which],
-            self.side[which],
-            self.log_moduli[which],
+            self.partners[fits],
+            self.widths[fits],
+            self.side[fits],
+            self.log_moduli[fits],
         )
 
 
